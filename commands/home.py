@@ -134,19 +134,38 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
 
 
 @app.command()
-def convert(home: str, out: Path, layout: bool = False, homes: Path | None = None, as_json: bool = False) -> None:
+def convert(
+    home: str,
+    out: Path,
+    layout: bool = False,
+    fill: bool = False,
+    mapping: Path | None = None,
+    homes: Path | None = None,
+    as_json: bool = False,
+) -> None:
     """Write a home as a scene graph in the release's layout, or its node ids by name.
 
     A file `x.ids.csv` next to a plan `x.yaml` keeps the ids when the plan changes; new nodes get new ids.
 
+    With --fill, HOME may be a scene graph of any shape: of a robot, a scan or a simulator. What the file leaves out is
+    filled in: rooms, places, states, boxes, nearness. A table counts what was understood, filled in and left out; the
+    status is 1 if anything was left out. `classes: {rocket: null}` in a mapping file leaves it out without a word.
+
     \b
     Examples:
       hearth home convert maple maple.json
+      hearth home convert scan.json mine.json --fill
+      hearth home convert scan.json mine.json --fill --mapping names.yaml
       hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
       hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
     from hearth.homes import home_export, library
 
+    if fill or mapping is not None:
+        from hearth.commands.filled_homes import convert_filled
+
+        convert_filled(Path(home), out, mapping, as_json)
+        return
     if out.name.endswith(".ids.csv"):
         written = home_export.write_ids(_layout(home, homes), out)
     else:

@@ -15,7 +15,10 @@ ELSEWHERE: Final = {
 }
 """The names that other projects' graphs have for these keys, in lower case."""
 
-REMEDY: Final = "nodes need id and class_name; edges need from_id, relation_type and to_id"
+REMEDY: Final = (
+    "nodes need id and class_name; edges need from_id, relation_type and to_id; "
+    "`hearth home convert FILE OUT.json --fill` reads graphs of other shapes"
+)
 
 _SHOWN = 6
 """Keys of a node or an edge that a message lists."""

@@ -1,0 +1,185 @@
+"""What a file leaves out of its home, filled in from the knowledge: rooms, places, doors, a person, boxes, nearness."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+from hearth.homes.from_graph.graph_layout import lay_out
+from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
+from hearth.homes.geometry import Rect, bottom, box_over, footprint, top
+from hearth.homes.lint import CHECKS, NEEDS_STATES, View
+from hearth.homes.relations import close, facing
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
+
+OFTEN = 3
+"""Least weight of a placement by which a thing without a place is put somewhere."""
+
+TOUCHING = 0.12
+"""Metres between a thing's underside and the top of what it stands on."""
+
+COVERED = 0.5
+"""Least share of a thing's outline that lies over what it stands on."""
+
+
+def room_for(things: Sequence[str], knowledge: Knowledge) -> str:
+    """Return the class of the room that things of some classes are most usual in; `living_room` where none says."""
+    votes: Counter[str] = Counter()
+    for name in things:
+        rooms = {place.room or place.destination for place in knowledge.placements(name) if place.weight >= OFTEN}
+        votes.update(room for room in rooms if knowledge.is_room(room))
+    return max(sorted(votes), key=votes.__getitem__, default="living_room")
+
+
+def usual_place(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tuple[str, Node] | None:
+    """Return where a thing usually is among the nodes there are, as the relation and the node.
+
+    None: the knowledge names no such place, or none of them is there.
+    """
+    for place in knowledge.placements(node.class_name):
+        relation = {"ON": "ON", "IN": "INSIDE"}.get(place.relation)
+        if relation is None or place.weight < OFTEN:
+            continue
+        for other in nodes:
+            if other.class_name == place.destination and other.id != node.id:
+                return ("INSIDE" if other.category == ROOM_CATEGORY else relation), other
+    return None
+
+
+def held_by_box(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tuple[str, Node] | None:
+    """Return what a thing stands on or in by its box, of the nodes of its room; None where it stands on the floor."""
+    if node.box is None:
+        return None
+    mine, area = footprint(node.box), max(node.box.size[0] * node.box.size[2], 1e-6)
+    under: list[tuple[float, str, Node]] = []
+    for other in nodes:
+        if other.box is None or other.id == node.id or _area(other.box) < area:
+            continue
+        if mine.overlap(footprint(other.box)) < COVERED * area:
+            continue
+        if abs(bottom(node.box) - top(other.box)) <= TOUCHING:
+            under.append((-top(other.box), "ON", other))
+        elif bottom(other.box) - 0.02 <= bottom(node.box) and top(node.box) <= top(other.box) + 0.02:
+            inside = knowledge.has(other.class_name, "CAN_OPEN") or knowledge.has(other.class_name, "CONTAINERS")
+            under.append((-top(other.box), "INSIDE" if inside else "ON", other))
+    return min(under, key=lambda each: (each[0], each[2].id))[1:] if under else None
+
+
+def _area(box: Box) -> float:
+    return box.size[0] * box.size[2]
+
+
+def with_usual_fields(node: Node, knowledge: Knowledge) -> Node:
+    """Return a node with its class's properties where it has none, and with a state of each group that they need."""
+    known = knowledge.object_class(node.class_name)
+    if known is None or known.category in (ROOM_CATEGORY, CHARACTER_CATEGORY):
+        return node
+    properties = node.properties or tuple(sorted(known.properties))
+    own = set(node.states)
+    lacking = [states for needed, states in NEEDS_STATES.items() if needed in properties and not own & set(states)]
+    usual = knowledge.default_states(known.name)
+    states = [next((state for state in usual if state in group), group[1]) for group in lacking]
+    if properties == node.properties and not states:
+        return node
+    return replace(node, properties=properties, states=(*node.states, *states))
+
+
+def with_person(graph: EnvironmentGraph, number: int) -> EnvironmentGraph:
+    """Return a graph with a person in its first room; the same graph where somebody is there."""
+    if any(node.class_name == CHARACTER_CLASS for node in graph.nodes):
+        return graph
+    room = next(node for node in graph.nodes if node.category == ROOM_CATEGORY)
+    person = Node(number, CHARACTER_CLASS, CHARACTER_CATEGORY)
+    return replace(graph, nodes=(*graph.nodes, person), edges=(*graph.edges, Edge(number, "INSIDE", room.id)))
+
+
+def with_doors(graph: EnvironmentGraph, first: int) -> tuple[EnvironmentGraph, int]:
+    """Return a graph in which a doorjamb joins each room to the largest one, and their number.
+
+    A graph that has a BETWEEN edge, or a single room, stays as it is.
+    """
+    rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
+    if len(rooms) < 2 or any(edge.relation == "BETWEEN" for edge in graph.edges):
+        return graph, 0
+    held = Counter(edge.target for edge in graph.edges if edge.relation == "INSIDE")
+    hub = max(rooms, key=lambda room: (room.class_name == "entrance_hall", held[room.id], -room.id))
+    others = [room for room in rooms if room.id != hub.id]
+    doors = [Node(first + number, "doorjamb", "Doors") for number in range(len(others))]
+    edges = [
+        Edge(door.id, relation, target)
+        for door, room in zip(doors, others, strict=True)
+        for relation, target in (("INSIDE", room.id), ("BETWEEN", room.id), ("BETWEEN", hub.id))
+    ]
+    return replace(graph, nodes=(*graph.nodes, *doors), edges=(*graph.edges, *edges)), len(doors)
+
+
+def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> int:
+    """Return how many things of a graph with boxes nobody can walk to."""
+    return sum(1 for _ in CHECKS["on foot"](View(graph, knowledge)))
+
+
+def without_boxes(graph: EnvironmentGraph) -> EnvironmentGraph:
+    """Return a graph without geometry."""
+    return replace(graph, nodes=tuple(replace(node, box=None, yaw=None) for node in graph.nodes))
+
+
+def laid_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> EnvironmentGraph:
+    """Return a graph with boxes that its relations suggest.
+
+    Raises:
+        HearthError: as `lay_out`.
+    """
+    return lay_out(graph, name, knowledge).graph
+
+
+def nearness(graph: EnvironmentGraph, knowledge: Knowledge) -> list[Edge]:
+    """Return the CLOSE and FACING edges that the boxes of a graph show and that it lacks."""
+    if not has_geometry(graph):
+        return []
+    rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
+    inside = {
+        edge.source: str(edge.target) for edge in graph.edges if edge.relation == "INSIDE" and edge.target not in rooms
+    }
+    things = [
+        replace(thing, inside=inside.get(thing.line, ""))
+        for thing in measured(graph, "", knowledge).things
+        if thing.room
+    ]
+    lookable = frozenset(name for name, known in knowledge.objects.items() if "LOOKABLE" in known.properties)
+    pairs = [("CLOSE", each) for each in close(things).tolist()] + [
+        ("FACING", each) for each in facing(things, lookable)
+    ]
+    had = {(edge.source, edge.relation, edge.target) for edge in graph.edges}
+    edges = (Edge(things[one].line, relation, things[other].line) for relation, (one, other) in pairs)
+    return sorted({edge for edge in edges if tuple(edge) not in had})
+
+
+def room_boxes(graph: EnvironmentGraph) -> dict[int, Box] | None:
+    """Return boxes of the rooms around the things in each; None where a room is empty or two of them overlap."""
+    rooms = [node.id for node in graph.nodes if node.category == ROOM_CATEGORY]
+    held: dict[int, list[Box]] = {room: [] for room in rooms}
+    boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
+    for edge in graph.edges:
+        if edge.relation == "INSIDE" and edge.target in held and edge.source in boxes:
+            held[edge.target].append(boxes[edge.source])
+    if not all(held.values()):
+        return None
+    floor = min(bottom(box) for each in held.values() for box in each)
+    found = {room: Rect.over(map(footprint, each)).inset(-MARGIN) for room, each in held.items()}
+    if any(found[one].overlap(found[other]) > 0 for one, other in _pairs(rooms)):
+        return None
+    return {room: box_over(rect, floor, floor + HEIGHT) for room, rect in found.items()}
+
+
+MARGIN = 0.6
+"""Metres of floor around the things of a room whose own size is not known."""
+
+HEIGHT = 2.6
+"""Metres from floor to ceiling of such a room."""
+
+
+def _pairs(rooms: Sequence[int]) -> Iterator[tuple[int, int]]:
+    return ((one, other) for number, one in enumerate(rooms) for other in rooms[:number])

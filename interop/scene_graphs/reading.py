@@ -1,0 +1,389 @@
+"""A scene graph of any project, read as a home of ours, with a count of everything that was filled in or left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+from hearth.homes.from_graph.layout_from_boxes import has_geometry
+from hearth.homes.node_defaults import filled
+from hearth.homes.object_shapes import form
+from hearth.interop.scene_graphs import completion
+from hearth.interop.scene_graphs.class_names import ClassOf, class_of
+from hearth.interop.scene_graphs.entities import Entity, entities_of
+from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of
+from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.shape import Shape, usual
+from hearth.interop.scene_graphs.vectors import Vector
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
+from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
+from hearth.schemas.vocabulary import FIRST_ADDED_ID, ROOM_CATEGORY
+
+MOST_ENTRIES = 20_000
+"""Things and rooms of a file that are read."""
+
+
+class Filling(NamedTuple):
+    """A kind of thing that was understood, filled in or left out: how often, and some of the cases."""
+
+    what: str
+    number: int
+    examples: tuple[str, ...] = ()
+
+
+CLASSES_BY = {
+    "name": "classes by their names",
+    "other name": "classes by other names",
+    "table": "classes by the table",
+    "number left out": "classes without a number behind them",
+    "building": "parts of the building, left out",
+    "": "things of no class of ours, left out",
+}
+"""How a class was found, in words; see `ClassOf`."""
+
+
+class ReadGraph(NamedTuple):
+    """A home that was read from a file of another project.
+
+    Attributes:
+        graph: as ours are.
+        fillings: what was understood, filled in and changed.
+        left_out: entries and relations that are not in the graph, each with its place in the file.
+        ids: the file's own id of each node that has one.
+    """
+
+    graph: EnvironmentGraph
+    fillings: tuple[Filling, ...]
+    left_out: tuple[Diagnostic, ...]
+    ids: Mapping[int, str]
+
+
+def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") -> ReadGraph:
+    """Return the home that a JSON value of another project describes.
+
+    Raises:
+        HearthError: BAD_GRAPH: it lists no things; FILE_TOO_LARGE: it lists more than are read.
+
+    Examples:
+        >>> from hearth.interop.scene_graphs.reading import read_scene
+        >>> from hearth.interop.scene_graphs.shape import usual
+        >>> scan = [{"name": "fridge", "room": "kitchen"}, {"name": "milk", "in": "fridge"}]
+        >>> home = read_scene(scan, usual(), known)
+        >>> [node.class_name for node in home.graph.nodes]
+        ['kitchen', 'fridge', 'milk', 'character']
+    """
+    found = entities_of(data, shape)
+    if not found.entities:
+        raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
+                             suggestion="name the fields by `--mapping FILE`")  # fmt: skip
+    if len(found.entities) > MOST_ENTRIES:
+        message = f"{len(found.entities):,} things and rooms, where {MOST_ENTRIES:,} are read"
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, file=file, suggestion="write a file for each floor or room")
+    return _Reading(shape, knowledge, file).read(found.entities, ties_of(found, shape))
+
+
+def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> ReadGraph:
+    """Return a graph in the release's layout with what a home needs and the graph leaves out.
+
+    Its nodes, relations and boxes stay. A graph with a CLOSE edge keeps its own nearness.
+
+    Raises:
+        HearthError: as `lay_out`.
+    """
+    reading = _Reading(usual(), knowledge, file, keeps_boxes=True)
+    if not any(node.category == ROOM_CATEGORY for node in graph.nodes):
+        name = completion.room_for([node.class_name for node in graph.nodes], knowledge)
+        room = Node(_next(graph), name, ROOM_CATEGORY)
+        graph = replace(graph, nodes=(*graph.nodes, room))
+        reading.note("rooms made, as the file has none", [name])
+    nodes = [completion.with_usual_fields(node, knowledge) for node in graph.nodes]
+    changed = [new.class_name for new, old in zip(nodes, graph.nodes, strict=True) if new is not old]
+    reading.note("things with properties or states from the knowledge", changed)
+    made = reading.completed(replace(graph, nodes=tuple(nodes)))
+    return ReadGraph(made, reading.counted(), (), {})
+
+
+@dataclass
+class _Reading:
+    """The reading of one file, step by step."""
+
+    shape: Shape
+    knowledge: Knowledge
+    file: str
+    keeps_boxes: bool = False
+    notes: list[Filling] = field(default_factory=list)
+    left_out: list[Diagnostic] = field(default_factory=list)
+
+    def read(self, entities: Sequence[Entity], ties: Ties) -> ReadGraph:
+        """Return the home of some entries and their relations."""
+        classes = {id(entity): class_of(entity.label, self.shape, self.knowledge) for entity in entities}
+        kept = [entity for entity in entities if classes[id(entity)].name]
+        self._note_classes(entities, classes)
+        if not kept:
+            raise HearthError(*self.left_out[:20])
+        shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
+        units = units_of(kept, [None if shaped is None else shaped.size for shaped in shapes], self.shape)
+        entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
+        rooms = self._named_rooms(ties, entries)
+        numbers = _numbers([*rooms.values(), *entries])
+        edges = self._edges(ties, entries, rooms, numbers)
+        graph = self._graph([*rooms.values(), *entries], numbers, edges)
+        self._note_units(entries, units)
+        graph = self.completed(graph)
+        ids = {numbers[id(entry)]: entry.entity.keys[0] for entry in entries if entry.entity.keys}
+        return ReadGraph(graph, self.counted(), tuple(self.left_out), ids)
+
+    def counted(self) -> tuple[Filling, ...]:
+        """Return what was noted, in its order."""
+        return tuple(note for note in self.notes if note.number)
+
+    def note(self, what: str, examples: Sequence[str]) -> None:
+        """Note what was understood, filled in or changed, with a word for each case."""
+        self.notes.append(Filling(what, len(examples), tuple(dict.fromkeys(examples))[:4]))
+
+    def _leave(self, code: Code, message: str, path: str, suggestion: str = "") -> None:
+        self.left_out.append(Diagnostic(code, f"{path}: {message}", self.file, suggestion=suggestion))
+
+    def _note_classes(self, entities: Sequence[Entity], classes: Mapping[int, ClassOf]) -> None:
+        ways: dict[str, list[str]] = {}
+        for entity in entities:
+            found = classes[id(entity)]
+            ways.setdefault(found.by, []).append(f"{entity.label} = {found.name}" if found.name else entity.label)
+            if not found.by:
+                near = self.knowledge.suggest(entity.label)
+                hint = f"did you mean `{near[0]}`? " if near else ""
+                hint += "`classes:` of a mapping file names the class, or null to leave it out without a word"
+                self._leave(Code.UNKNOWN_OBJECT, f"no class is called `{entity.label}`", entity.path, hint)
+        for by, what in CLASSES_BY.items():
+            self.note(what, ways.get(by, []))
+
+    def _named_rooms(self, ties: Ties, entries: Sequence[Entry]) -> dict[str, Entry]:
+        """Return an entry for each room that entries only name; a room for all where there is none."""
+        kept = {id(entry.entity) for entry in entries}
+        found: dict[str, Entry] = {}
+        for entity, text in ties.rooms:
+            name = class_of(text, self.shape, self.knowledge).name
+            if id(entity) in kept and self.knowledge.is_room(name):
+                found.setdefault(text, Entry(Entity("", (), text, text, {}), name))
+            elif id(entity) in kept:
+                self._leave(Code.BAD_GRAPH, f"it stands in or on `{text}`, which is nothing in the file", entity.path)
+        self.note("rooms that things only name", list(found))
+        if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
+            name = completion.room_for([entry.class_name for entry in entries], self.knowledge)
+            found[""] = Entry(Entity("", (), name, name, {}), name)
+            self.note("rooms made, as the file has none", [name])
+        return found
+
+    def _edges(
+        self, ties: Ties, entries: Sequence[Entry], rooms: Mapping[str, Entry], numbers: Mapping[int, int]
+    ) -> list[Edge]:
+        """Return the file's own relations, each thing on or in one thing at most."""
+        by_entity = {id(entry.entity): entry for entry in entries}
+        above = holders(ties.ties, lambda entity: id(entity) in by_entity)
+        edges: list[Edge] = []
+        for entry in entries:
+            me = numbers[id(entry)]
+            for relation, entity in above.get(id(entry.entity), []):
+                other = by_entity[id(entity)]
+                edges.append(Edge(me, self._held(entry, relation, other), numbers[id(other)]))
+        for entity, text in ties.rooms:
+            if id(entity) in by_entity and text in rooms:
+                edges.append(Edge(numbers[id(by_entity[id(entity)])], "INSIDE", numbers[id(rooms[text])]))
+        for tie in ties.ties:
+            if tie.relation not in ("ON", "INSIDE", "") and {id(tie.source), id(tie.target)} <= by_entity.keys():
+                pair = (numbers[id(by_entity[id(end)])] for end in (tie.source, tie.target))
+                edges.append(Edge(next(pair), tie.relation, next(pair)))
+        self.note("relations of the file", [edge.relation for edge in edges])
+        self.note("relations without a counterpart, left out", [word for _, word in ties.unknown_words])
+        for path, text in ties.dangling:
+            self._leave(Code.BAD_GRAPH, f"a relation names `{text}`, which is nothing in the file", path)
+        for path, text in ties.ambiguous:
+            message = f"a relation names `{text}`, and several things are called so"
+            self._leave(Code.DUPLICATE, message, path, "give each thing an id of its own")
+        return list(dict.fromkeys(edges))
+
+    def _held(self, entry: Entry, relation: str, other: Entry) -> str:
+        """Return the relation to a holder; where the file does not say which, that which is usual."""
+        if self.knowledge.is_room(other.class_name):
+            return "INSIDE"
+        if relation:
+            return relation
+        places = [p for p in self.knowledge.placements(entry.class_name) if p.destination == other.class_name]
+        for place in places:
+            if place.relation in ("ON", "IN"):
+                return "ON" if place.relation == "ON" else "INSIDE"
+        return "INSIDE" if self.knowledge.has(other.class_name, "CAN_OPEN") else "ON"
+
+    def _graph(self, entries: Sequence[Entry], numbers: Mapping[int, int], edges: Sequence[Edge]) -> EnvironmentGraph:
+        nodes = [self._node(entry, numbers[id(entry)]) for entry in entries]
+        rows = [{"from_id": one, "relation_type": relation, "to_id": other} for one, relation, other in edges]
+        return from_release(filled({"nodes": nodes, "edges": rows}, self.knowledge).data, self.file)
+
+    def _node(self, entry: Entry, number: int) -> dict[str, Any]:
+        node: dict[str, Any] = {"id": number, "class_name": entry.class_name}
+        known = self.knowledge.objects[entry.class_name]
+        by_default = self.knowledge.default_states(entry.class_name)
+        own = [state for state in entry.states if self._can_be(state, by_default, known.properties)]
+        groups = {self.knowledge.group_of(state) for state in own}
+        if own:
+            node["states"] = [*own, *(state for state in by_default if self.knowledge.group_of(state) not in groups)]
+        shaped = None if self.knowledge.is_room(entry.class_name) else form(entry.class_name, self.knowledge)
+        size = entry.size or (shaped and shaped.size)
+        if entry.place is not None and size and all(side > 0 for side in size) and self._is_of_a_home(entry, size):
+            node["bounding_box"] = {"center": list(entry.place), "size": list(size)}
+            node["yaw"] = entry.yaw
+        return node
+
+    def _is_of_a_home(self, entry: Entry, size: Vector) -> bool:
+        """Return whether a thing with a place may have it in a home; a place or size that none has is noted."""
+        assert entry.place is not None
+        if max(map(abs, entry.place)) <= FARTHEST and max(size) <= LONGEST_HOME:
+            return True
+        message = f"{entry.class_name} lies {max(map(abs, entry.place)):g} m off or is {max(size):g} m long"
+        self._leave(Code.BAD_GRAPH, message, entry.entity.path, "`scale:` of a mapping file: metres of a unit")
+        return False
+
+    def _can_be(self, state: str, by_default: Sequence[str], properties: frozenset[str]) -> bool:
+        """Return whether a class can be in a state: a property says so, or it is usually in a state of that group."""
+        needs = {"OPEN": "CAN_OPEN", "CLOSED": "CAN_OPEN", "ON": "HAS_SWITCH", "OFF": "HAS_SWITCH"}.get(state)
+        if needs:
+            return needs in properties
+        return self.knowledge.group_of(state) in {self.knowledge.group_of(each) for each in by_default}
+
+    def _note_units(self, entries: Sequence[Entry], units: Units) -> None:
+        placed = [entry for entry in entries if entry.place is not None]
+        self.note(f"places, {units.up} upwards ({units.up_reason})", [entry.class_name for entry in placed])
+        if units.scale != 1.0:
+            self.note(f"places in units of {units.scale:g} m, as they are so far apart", [e.class_name for e in placed])
+        sized = [each.class_name for each in placed if not (each.size or self.knowledge.is_room(each.class_name))]
+        self.note("sizes from the knowledge", sized)
+
+    def completed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        """Return the graph with everything that a home of ours has and the file does not say."""
+        graph = self._placed(graph)
+        graph = self._housed(graph)
+        person = completion.with_person(graph, _next(graph))
+        self.note("person, in the first room", ["character"] if person is not graph else [])
+        graph = self._both_ways(self._measured(person))
+        if self.keeps_boxes and any(edge.relation == "CLOSE" for edge in graph.edges):
+            return graph
+        near = completion.nearness(graph, self.knowledge)
+        for relation in ("CLOSE", "FACING"):
+            self.note(f"{relation} from the boxes", [relation for edge in near if edge.relation == relation])
+        return replace(graph, edges=(*graph.edges, *near))
+
+    def _both_ways(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        """Return the graph with nearness in both directions."""
+        had = set(graph.edges)
+        back = {Edge(edge.target, "CLOSE", edge.source) for edge in graph.edges if edge.relation == "CLOSE"} - had
+        return replace(graph, edges=(*graph.edges, *sorted(back)))
+
+    def _placed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        """Return the graph with a place for each thing that the file puts nowhere: by its box, or its usual one."""
+        rooms = {node.id: node for node in graph.nodes if node.category == ROOM_CATEGORY}
+        held = {edge.source for edge in graph.edges if edge.relation in ("ON", "INSIDE") and edge.target not in rooms}
+        housed = {edge.source for edge in graph.edges if edge.relation == "INSIDE"}
+        things = [node for node in graph.nodes if node.id not in rooms]
+        by: dict[str, list[str]] = {"box": [], "usual": [], "room": []}
+        new: list[Edge] = []
+        for node in things:
+            shaped = form(node.class_name, self.knowledge)
+            small = shaped is not None and shaped.mount == "item"
+            if node.id in held or (node.id in housed and not (small and node.box)):
+                continue
+            place, how = completion.held_by_box(node, things, self.knowledge) if small else None, "box"
+            if place is None and node.id not in housed and node.box is None:
+                place, how = completion.usual_place(node, graph.nodes, self.knowledge), "usual"
+            if place is None and node.id not in housed:
+                place, how = ("INSIDE", self._room_of(node.box, list(rooms.values()))), "room"
+            if place is not None:
+                new.append(Edge(node.id, place[0], place[1].id))
+                by[how].append(f"{node.class_name} ({node.id}) {place[0]} {place[1].class_name} ({place[1].id})")
+        self.note("things on or in others by their boxes", by["box"])
+        self.note("things where they usually are, as the file does not say", by["usual"])
+        self.note("things in a room that the file does not name", by["room"])
+        return replace(graph, edges=(*graph.edges, *new))
+
+    def _room_of(self, box: Box | None, rooms: Sequence[Any]) -> Any:
+        """Return the room whose box holds a box's centre; else the first room."""
+        for room in rooms if box is not None else ():
+            if room.box is not None and box is not None and all(
+                abs(box.center[axis] - room.box.center[axis]) <= room.box.size[axis] / 2 for axis in (0, 2)
+            ):  # fmt: skip
+                return room
+        return rooms[0]
+
+    def _housed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        """Return the graph in which everything that is on or in something is INSIDE the room of that as well."""
+        rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
+        above: dict[int, list[int]] = {}
+        for edge in graph.edges:
+            if edge.relation in ("ON", "INSIDE"):
+                above.setdefault(edge.source, []).append(edge.target)
+        had = set(graph.edges)
+        new = [
+            Edge(node.id, "INSIDE", room)
+            for node in graph.nodes
+            if node.id not in rooms and (room := _first_room(node.id, above, rooms)) is not None
+        ]
+        return replace(graph, edges=(*graph.edges, *(edge for edge in new if edge not in had)))
+
+    def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        """Return the graph with boxes: the file's, if a person can walk to everything; else those of a layout."""
+        if self.keeps_boxes and has_geometry(graph):
+            return graph
+        own = self._with_room_boxes(graph)
+        if own is not None:
+            cut = completion.unreachable(own, self.knowledge)
+            if not cut:
+                return own
+            self.note("boxes of the file left out, as so many things can't be walked to", ["box"] * cut)
+        doors, count = completion.with_doors(completion.without_boxes(graph), _next(graph))
+        self.note("doors from the largest room to the others", ["doorjamb"] * count)
+        made = completion.laid_out(doors, self.file, self.knowledge)
+        self.note("boxes that fit the relations", [node.class_name for node in made.nodes if node.box is not None])
+        return made
+
+    def _with_room_boxes(self, graph: EnvironmentGraph) -> EnvironmentGraph | None:
+        """Return the graph with a box for each room, around its things where the file has none; None without boxes."""
+        rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
+        things = [node for node in graph.nodes if node.category != ROOM_CATEGORY and node.class_name != "character"]
+        if not things or any(node.box is None for node in things):
+            return None
+        if any(room.box is None or min(room.box.size) <= 0 for room in rooms):
+            boxes = completion.room_boxes(graph)
+            if boxes is None:
+                return None
+            self.note("rooms around their things", [room.class_name for room in rooms])
+            nodes = (replace(node, box=boxes[node.id]) if node.id in boxes else node for node in graph.nodes)
+            return replace(graph, nodes=tuple(nodes))
+        return graph
+
+
+def _first_room(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
+    waiting, seen = [node], {node}
+    while waiting:
+        for holder in above.get(waiting.pop(0), ()):
+            if holder in rooms:
+                return holder
+            if holder not in seen:
+                seen.add(holder)
+                waiting.append(holder)
+    return None
+
+
+def _next(graph: EnvironmentGraph) -> int:
+    return max(node.id for node in graph.nodes) + 1
+
+
+def _numbers(entries: Sequence[Entry]) -> dict[int, int]:
+    """Return a node id for each entry, by its `id()`: the file's, where all are numbers; else from 1 in its order."""
+    own = [entry.entity.keys[0] if entry.entity.keys else "" for entry in entries]
+    ids = [int(text) for text in own if text.isdecimal() and 0 < int(text) < FIRST_ADDED_ID and text[0] != "0"]
+    if len(ids) == len(set(ids)) == len(entries):
+        return {id(entry): number for entry, number in zip(entries, ids, strict=True)}
+    return {id(entry): number for number, entry in enumerate(entries, 1)}
