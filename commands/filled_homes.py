@@ -38,7 +38,7 @@ def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool)
 
 
 def _rows(fillings: Sequence[Filling]) -> list[tuple[str, int, str]]:
-    return [(filling.what, filling.count, ", ".join(filling.examples)) for filling in fillings]
+    return [(filling.what, filling.number, ", ".join(filling.examples)) for filling in fillings]
 
 
 def read_home(source: Path, mapping: Path | None) -> ReadGraph:

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+
 from hearth.homes.lint import lint
 from hearth.interop.scene_graphs.mapping_file import read_mapping
 from hearth.interop.scene_graphs.reading import MOST_ENTRIES, complete, read_scene
@@ -45,7 +46,7 @@ ROBOT = {
     "header": {"frame_id": "map"},
     "objects": [
         {"uid": "table_1", "label": "table", "room": "kitchen", "dimensions": {"x": 1.2, "y": 0.8, "z": 0.76},
-         "pose": {"position": {"x": 1.0, "y": 2.0, "z": 0.38}, "orientation": {"x": 0, "y": 0, "z": 0.7071, "w": 0.7071}}},
+         "pose": {"position": {"x": 1.0, "y": 2.0, "z": 0.38}, "orientation": {"x": 0, "y": 0, "z": 0.7, "w": 0.7}}},
         {"uid": "cup_1", "label": "cup", "parent": "table_1", "dimensions": {"x": 0.08, "y": 0.08, "z": 0.1},
          "pose": {"position": {"x": 1.1, "y": 2.0, "z": 0.81}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}},
     ],
