@@ -40,7 +40,7 @@ def class_of(label: str, shape: Shape, knowledge: Knowledge) -> ClassOf:
 
 
 _NUMBER = re.compile(r"(?:[|#:/].*|[\s_.-]*\d+(?:_\d+)*|[_-][0-9a-f]{6,})$", re.IGNORECASE)
-"""What stands behind a label: `Fridge|+01.2|-0.1`, `chair_12`, `Cup_5f3a9c21`."""
+"""Text behind a label: `Fridge|+01.2|-0.1`, `chair_12`, `Cup_5f3a9c21`."""
 
 
 def _without_number(label: str) -> str:

@@ -1,4 +1,4 @@
-"""What a file leaves out of its home, filled in from the knowledge: rooms, places, doors, a person, boxes, nearness."""
+"""Parts of a home that a file leaves out, filled in from the knowledge: rooms, places, doors, boxes, nearness."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ OFTEN = 3
 """Least weight of a placement by which a thing without a place is put somewhere."""
 
 TOUCHING = 0.12
-"""Metres between a thing's underside and the top of what it stands on."""
+"""Metres between a thing's underside and the top of its support."""
 
 COVERED = 0.5
-"""Least share of a thing's outline that lies over what it stands on."""
+"""Least share of a thing's outline that lies over its support."""
 
 
 def room_for(things: Sequence[str], knowledge: Knowledge) -> str:

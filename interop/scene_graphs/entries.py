@@ -1,4 +1,4 @@
-"""The entries of a file as things of ours: class, place, size, states, and what they refer to."""
+"""The entries of a file as things of ours: class, place, size, states, references."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Entry:
 
 @dataclass(frozen=True)
 class Units:
-    """How a file measures, and why this is assumed.
+    """Units of a file, and why they are assumed.
 
     Attributes:
         up: the axis that points upwards.

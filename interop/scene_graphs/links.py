@@ -1,4 +1,4 @@
-"""What stands where in a file: each entry's holders, found from relations, fields and lists within lists."""
+"""Holders of each entry of a file, found from relations, fields and lists within lists."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hearth.interop.scene_graphs.shape import Shape
 from hearth.kb.spelling import key_of
 
 HOLDERS = ("ON", "INSIDE", "")
-"""Relations to what holds a thing; "" where the file does not say which of the two."""
+"""Relations to the holder of a thing; "" where the file does not say which of the two."""
 
 
 class Tie(NamedTuple):
@@ -24,7 +24,7 @@ class Tie(NamedTuple):
 
 
 class Ties(NamedTuple):
-    """The relations of a file, and what could not be used, each with its path."""
+    """The relations of a file, and its unusable references, each with its path."""
 
     ties: tuple[Tie, ...]
     rooms: tuple[tuple[Entity, str], ...]
@@ -65,7 +65,7 @@ _ENDS = re.compile(r"^(?:(a|b)\s+)?(.*?)(?:\s+(a|b))?$")
 
 
 class _Reader:
-    """A reader of references that knows all entries by what they are called."""
+    """A reader of references that knows all entries by their ids, names and labels."""
 
     def __init__(self, shape: Shape, by_key: Mapping[str, Entity], twice: frozenset[str]) -> None:
         self.shape = shape

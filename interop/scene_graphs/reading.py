@@ -43,7 +43,7 @@ CLASSES_BY = {
     "building": "parts of the building, left out",
     "": "things of no class of ours, left out",
 }
-"""How a class was found, in words; see `ClassOf`."""
+"""Words for the ways in which a class was found; see `ClassOf`."""
 
 
 class ReadGraph(NamedTuple):
@@ -87,7 +87,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
 
 
 def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> ReadGraph:
-    """Return a graph in the release's layout with what a home needs and the graph leaves out.
+    """Return a graph in the release's layout, with the parts of a home that it leaves out.
 
     Its nodes, relations and boxes stay. A graph with a CLOSE edge keeps its own nearness.
 

@@ -22,7 +22,7 @@ Names = tuple[str, ...]
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """What the fields and words of a scene graph mean.
+    """Meaning of the fields and words of a scene graph.
 
     Attributes:
         fields: field of ours -> names that others have for it, the likeliest first.

@@ -89,5 +89,5 @@ def _of_quaternion(four: Sequence[Any], up: str) -> float | None:
         return None
     x, y, z, w = map(float, four)
     if up == "y":
-        return degrees(atan2(2 * (w * y + x * z), 1 - 2 * (x * x + y * y)))
-    return degrees(atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+        return degrees(atan2(2 * (w * y + x * z), w * w + z * z - x * x - y * y))
+    return degrees(atan2(2 * (w * z + x * y), w * w + x * x - y * y - z * z))
