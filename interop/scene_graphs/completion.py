@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from hearth.homes.from_graph.graph_layout import lay_out
@@ -11,6 +11,7 @@ from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
 from hearth.homes.geometry import Rect, bottom, box_over, footprint, top
 from hearth.homes.lint import CHECKS, NEEDS_STATES, View
 from hearth.homes.relations import close, facing
+from hearth.interop.scene_graphs.single_holders import is_seat_for
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
@@ -49,6 +50,19 @@ def usual_place(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tupl
     return None
 
 
+def room_above(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
+    """Return the first room on the way from a thing through its holders; None where there is none."""
+    waiting, seen = [node], {node}
+    while waiting:
+        for holder in above.get(waiting.pop(0), ()):
+            if holder in rooms:
+                return holder
+            if holder not in seen:
+                seen.add(holder)
+                waiting.append(holder)
+    return None
+
+
 def held_by_box(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tuple[str, Node] | None:
     """Return what a thing stands on or in by its box, of the nodes of its room; None where it stands on the floor."""
     if node.box is None:
@@ -56,7 +70,7 @@ def held_by_box(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tupl
     mine, area = footprint(node.box), max(node.box.size[0] * node.box.size[2], 1e-6)
     under: list[tuple[float, str, Node]] = []
     for other in nodes:
-        if other.box is None or other.id == node.id or _area(other.box) < area:
+        if other.box is None or other.id == node.id or _area(other.box) < area or is_seat_for(node, other, knowledge):
             continue
         if mine.overlap(footprint(other.box)) < COVERED * area:
             continue

@@ -15,6 +15,7 @@ from hearth.interop.scene_graphs.entities import Entity, entities_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
 from hearth.interop.scene_graphs.shape import Shape, usual
+from hearth.interop.scene_graphs.single_holders import with_single_holders
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -133,7 +134,7 @@ class _Reading:
         edges = self._edges(ties, entries, rooms, numbers)
         graph = self._graph([*rooms.values(), *entries], numbers, edges)
         self._note_units(entries, units)
-        graph = self.completed(graph)
+        graph = self.completed(self._singly_held(graph))
         ids = {numbers[id(entry)]: entry.entity.keys[0] for entry in entries if entry.entity.keys}
         return ReadGraph(graph, self.counted(), tuple(self.left_out), ids)
 
@@ -160,6 +161,13 @@ class _Reading:
                 self._leave(Code.UNKNOWN_OBJECT, f"no class is called `{entity.label}`", entity.path, hint)
         for by, what in CLASSES_BY.items():
             self.note(what, ways.get(by, []))
+
+    def _singly_held(self, graph: EnvironmentGraph) -> EnvironmentGraph:
+        edges, left = with_single_holders(graph, self.knowledge)
+        names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes}
+        words = [f"{names[edge.source]} {edge.relation} {names[edge.target]}" for edge in left]
+        self.note("second holders and circles, left out", words)
+        return replace(graph, edges=tuple(edges))
 
     def _named_rooms(self, ties: Ties, entries: Sequence[Entry]) -> dict[str, Entry]:
         """Return an entry for each room that entries only name; a room for all where there is none."""
@@ -306,7 +314,8 @@ class _Reading:
         self.note("things on or in others by their boxes", by["box"])
         self.note("things where they usually are, as the file does not say", by["usual"])
         self.note("things in a room that the file does not name", by["room"])
-        return replace(graph, edges=(*graph.edges, *new))
+        placed = replace(graph, edges=(*graph.edges, *new))
+        return placed if self.keeps_boxes else self._singly_held(placed)
 
     def _room_of(self, box: Box | None, rooms: Sequence[Any]) -> Any:
         """Return the room whose box holds a box's centre; else the first room."""
@@ -319,17 +328,19 @@ class _Reading:
 
     def _housed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         """Return the graph in which everything that is on or in something is INSIDE the room of that as well."""
-        rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
+        rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
+        ids = {room.id for room in rooms}
         above: dict[int, list[int]] = {}
         for edge in graph.edges:
             if edge.relation in ("ON", "INSIDE"):
                 above.setdefault(edge.source, []).append(edge.target)
         had = set(graph.edges)
-        new = [
-            Edge(node.id, "INSIDE", room)
-            for node in graph.nodes
-            if node.id not in rooms and (room := _first_room(node.id, above, rooms)) is not None
-        ]
+        new: list[Edge] = []
+        for node in graph.nodes:
+            if node.id not in ids:
+                room = completion.room_above(node.id, above, ids) or self._room_of(node.box, rooms).id
+                above.setdefault(node.id, []).append(room)
+                new.append(Edge(node.id, "INSIDE", room))
         return replace(graph, edges=(*graph.edges, *(edge for edge in new if edge not in had)))
 
     def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:
@@ -362,18 +373,6 @@ class _Reading:
             nodes = (replace(node, box=boxes[node.id]) if node.id in boxes else node for node in graph.nodes)
             return replace(graph, nodes=tuple(nodes))
         return graph
-
-
-def _first_room(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
-    waiting, seen = [node], {node}
-    while waiting:
-        for holder in above.get(waiting.pop(0), ()):
-            if holder in rooms:
-                return holder
-            if holder not in seen:
-                seen.add(holder)
-                waiting.append(holder)
-    return None
 
 
 def _next(graph: EnvironmentGraph) -> int:
