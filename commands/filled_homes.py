@@ -33,8 +33,9 @@ def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool)
         return
     report(found.left_out, key=alike)
     output.table(("", "number", "such as"), _rows(found.fillings))
-    left = f"; {output.counted(len(found.left_out), 'fault')}: what they name is left out" if found.left_out else ""
+    left = f"; left out: {len(found.left_out):,}" if found.left_out else ""
     output.line(f"{out}: {output.counted(written, 'node')}, {output.counted(len(found.graph.edges), 'edge')}{left}")
+    output.status(len(found.left_out), strict=True)
 
 
 def _rows(fillings: Sequence[Filling]) -> list[tuple[str, int, str]]:

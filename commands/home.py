@@ -175,6 +175,19 @@ def convert(
 
 
 @app.command()
+def schema(as_json: bool = False) -> None:
+    """Print the JSON schema of scene graphs, for files that people or programs write.
+
+    \b
+    Example:
+      hearth home schema > scene-graph.schema.json
+    """
+    from hearth.schemas.graph_json_schema import graph_schema
+
+    output.emit(graph_schema())
+
+
+@app.command()
 def export(
     home: str,
     form: Literal["gltf", "obj"] = "gltf",
@@ -276,6 +289,7 @@ def stats(
       hearth home stats --against release_homes
       hearth home stats --generated 1000
     """
+    from hearth.commands.home_groups import among, homes_in
     from hearth.homes import library
     from hearth.homes.home_statistics import beside, of_homes, placement_distance, places
     from hearth.homes.procedural.home_generator import generate as generated_layout
@@ -285,8 +299,8 @@ def stats(
     groups = {
         "ours": [_graph(name, None) for name in ours],
         "generated": [scene(generated_layout(3 + k % 7, k, known), known) for k in range(seed, seed + generated)],
-        "theirs": _homes_in(homes),
-        "against": _homes_in(against),
+        "theirs": homes_in(homes),
+        "against": homes_in(against),
     }
     found: dict[str, Any] = {name: of_homes(graphs, known) for name, graphs in groups.items() if graphs}
     for figures in found.values():
@@ -296,7 +310,7 @@ def stats(
         for name, graphs in groups.items():
             if graphs:
                 found[name]["placement_distance"] = placement_distance(places(graphs, known), places(reference, known))
-        found["against"]["placement_distance"] = _among(reference)
+        found["against"]["placement_distance"] = among(reference)
     if as_json:
         output.emit(found | ({"placement_distance": found["ours"]["placement_distance"]} if reference else {}))
         return
@@ -327,26 +341,6 @@ def ways(names: list[str] | None = None, homes: Path | None = None, workers: int
     with bar("homes") as seen:
         found = [each._asdict() for each in make(wanted, workers, seen)]
     output.emit(found) if as_json else output.records(found)
-
-
-def _homes_in(folder: Path | None) -> list[EnvironmentGraph]:
-    from hearth.homes import library
-
-    return [_graph(name, folder) for name in library.names(folder, alone=True)] if folder else []
-
-
-def _among(homes: Sequence[EnvironmentGraph]) -> float | None:
-    """Return the mean placement distance of each home to all others."""
-    from statistics import fmean
-
-    from hearth.homes.home_statistics import placement_distance, places
-
-    known = read_knowledge(None)
-    apart = [
-        placement_distance(places([home], known), places([other for other in homes if other is not home], known))
-        for home in homes
-    ]
-    return round(fmean(distance or 0.0 for distance in apart), 3) if len(homes) > 1 else None
 
 
 def _graph(home: str, homes: Path | None) -> EnvironmentGraph:

@@ -10,6 +10,7 @@ from hearth.homes.from_graph.graph_layout import lay_out
 from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
 from hearth.homes.geometry import Rect, bottom, box_over, footprint, top
 from hearth.homes.lint import CHECKS, NEEDS_STATES, View
+from hearth.homes.object_shapes import Form, form
 from hearth.homes.relations import close, facing
 from hearth.interop.scene_graphs.single_holders import is_seat_for
 from hearth.kb.knowledge import Knowledge
@@ -99,6 +100,39 @@ def with_usual_fields(node: Node, knowledge: Knowledge) -> Node:
     if properties == node.properties and not states:
         return node
     return replace(node, properties=properties, states=(*node.states, *states))
+
+
+def boxed_by_holders(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[EnvironmentGraph, list[str]]:
+    """Return a graph in which things without a box have one on or in the box of their holder, and their classes.
+
+    Things on one holder stand side by side along its longer side.
+    """
+    rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
+    holders = {e.source: e for e in graph.edges if e.relation in ("ON", "INSIDE") and e.target not in rooms}
+    boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
+    names = {node.id: node.class_name for node in graph.nodes}
+    waiting = [node.id for node in graph.nodes if node.box is None and node.id in holders]
+    placed: list[str] = []
+    while ready := [node for node in waiting if holders[node].target in boxes]:
+        for node in ready:
+            edge = holders[node]
+            group = [other for other in holders if holders[other].target == edge.target]
+            shaped = form(names[node], knowledge)
+            boxes[node] = _on_or_in(boxes[edge.target], edge.relation, shaped, group.index(node), len(group))
+            placed.append(names[node])
+        waiting = [node for node in waiting if node not in boxes]
+    nodes = tuple(replace(node, box=boxes.get(node.id, node.box)) for node in graph.nodes)
+    return replace(graph, nodes=nodes), placed
+
+
+def _on_or_in(holder: Box, relation: str, shaped: Form | None, number: int, count: int) -> Box:
+    """Return a box for the thing of a number on, or in, a holder of `count` things."""
+    w, h, d = shaped.size if shaped is not None else (0.1, 0.1, 0.1)
+    (x, _, z), (long, _, deep) = holder.center, holder.size
+    share = ((number + 0.5) / count - 0.5) * 0.8
+    x, z = (x + share * long, z) if long >= deep else (x, z + share * deep)
+    low = top(holder) if relation == "ON" else bottom(holder) + 0.05
+    return Box((round(x, 4), round(low + h / 2, 4), round(z, 4)), (w, h, d))
 
 
 def with_person(graph: EnvironmentGraph, number: int) -> EnvironmentGraph:

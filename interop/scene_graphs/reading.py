@@ -22,7 +22,7 @@ from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
-from hearth.schemas.vocabulary import FIRST_ADDED_ID, ROOM_CATEGORY
+from hearth.schemas.vocabulary import CHARACTER_CLASS, FIRST_ADDED_ID, ROOM_CATEGORY
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
@@ -362,9 +362,16 @@ class _Reading:
     def _with_room_boxes(self, graph: EnvironmentGraph) -> EnvironmentGraph | None:
         """Return the graph with a box for each room, around its things where the file has none; None without boxes."""
         rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
-        things = [node for node in graph.nodes if node.category != ROOM_CATEGORY and node.class_name != "character"]
-        if not things or any(node.box is None for node in things):
+        had = [node for node in graph.nodes if node.box is not None and node.category != ROOM_CATEGORY]
+        if not had:
             return None
+        graph, placed = completion.boxed_by_holders(graph, self.knowledge)
+        things = [node for node in graph.nodes if node.category != ROOM_CATEGORY and node.class_name != CHARACTER_CLASS]
+        bare = [node.class_name for node in things if node.box is None]
+        if bare:
+            self.note(f"boxes of the file left out, as {bare[0]} and others have none", [n.class_name for n in had])
+            return None
+        self.note("boxes on or in what holds a thing", placed)
         if any(room.box is None or min(room.box.size) <= 0 for room in rooms):
             boxes = completion.room_boxes(graph)
             if boxes is None:

@@ -3,7 +3,10 @@
 import json
 
 import pytest
+from typer.testing import CliRunner
 
+from hearth.cli import app
+from hearth.homes.library import load_graph
 from hearth.homes.lint import lint
 from hearth.interop.scene_graphs.mapping_file import read_mapping
 from hearth.interop.scene_graphs.reading import MOST_ENTRIES, complete, read_scene
@@ -11,7 +14,8 @@ from hearth.interop.scene_graphs.shape import usual
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import from_release
+from hearth.schemas.graph import from_release, to_release
+from hearth.schemas.graph_json_schema import graph_schema
 
 KNOWN = default()
 
@@ -246,3 +250,24 @@ def test_faults_of_a_mapping_have_their_line(tmp_path, text, line):
     with pytest.raises(HearthError) as raised:
         read_mapping(path, KNOWN)
     assert raised.value.diagnostics[0].line == line
+
+
+def test_what_is_written_keeps_to_the_published_schema():
+    validate = pytest.importorskip("jsonschema", reason="jsonschema is not installed").validate
+    for data, _, _ in SHAPES.values():
+        validate(json.loads(json.dumps(to_release(read(data).graph))), graph_schema())
+    validate(json.loads(json.dumps(to_release(load_graph("maple", KNOWN)))), graph_schema())
+
+
+def test_a_home_of_another_shape_is_one_command(tmp_path):
+    def run(*words):
+        return CliRunner().invoke(app, [*map(str, words)])
+
+    (tmp_path / "scan.json").write_text(json.dumps(ROBOT))
+    done = run("home", "convert", tmp_path / "scan.json", tmp_path / "home.json", "--fill", "--json")
+    assert done.exit_code == 0, done.output
+    document = json.loads(done.stdout)
+    assert document["ids"] == {"2": "table_1", "3": "cup_1"} and document["left_out"] == []
+    assert run("home", "lint", tmp_path / "home.json").exit_code == 0
+    (tmp_path / "scan.json").write_text(json.dumps({"objects": [{"label": "fridge"}, {"label": "rocket"}]}))
+    assert run("home", "convert", tmp_path / "scan.json", tmp_path / "home.json", "--fill").exit_code == 1
