@@ -304,6 +304,16 @@ def on_startup(command: str, dirty: bool) -> None:
         link.symlink_to(path)
 
 
+def of_the_site(text: str) -> str:
+    """Return a page of `docs/` in which links to documents of the checkout lead to their pages."""
+    return re.sub(r"\]\(\.\./([^)#\s]+)", lambda match: f"]({COPIED.get(match[1], '../' + match[1])}", text)
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    """Rewrite the links of a page at the top; mkdocs calls this."""
+    return of_the_site(markdown) if "/" not in page.file.src_uri else markdown
+
+
 def on_files(files: Any, config: Any) -> Any:
     """Add the pages; mkdocs calls this."""
     from mkdocs.structure.files import File

@@ -371,7 +371,7 @@ class _Reading:
         if bare:
             self.note(f"boxes of the file left out, as {bare[0]} and others have none", [n.class_name for n in had])
             return None
-        self.note("boxes on or in what holds a thing", placed)
+        self.note("boxes on or in the holder of a thing", placed)
         if any(room.box is None or min(room.box.size) <= 0 for room in rooms):
             boxes = completion.room_boxes(graph)
             if boxes is None:

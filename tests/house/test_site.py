@@ -22,6 +22,7 @@ def pages(module):
     """Text of every page by its path."""
     made = module("docs/hooks/pages.py")
     written = {str(path.relative_to(ROOT / "docs")): path.read_text("utf-8") for path in (ROOT / "docs").rglob("*.md")}
+    written = {name: text if "/" in name else made.of_the_site(text) for name, text in written.items()}
     return written | {name: page() for name, page in made.PAGES.items()} | made.modules()
 
 
@@ -69,6 +70,12 @@ def test_every_command_and_entry_point_is_a_heading_of_a_page_one_click_away(pag
             assert words.replace(" ", "-") in anchors(pages["reference/commands.md"]), words
     for place in (each for group in made.ENTRY_POINTS.values() for each in group):
         assert f"\n### {place.replace(':', '.')}\n" in pages["python-api.md"], place
+
+
+def test_links_of_pages_lead_somewhere_in_a_checkout_too():
+    for path in (ROOT / "docs").rglob("*.md"):
+        for link, _ in links("", path.read_text("utf-8")):
+            assert not link.endswith(".md") or (path.parent / link).is_file(), f"{path}: {link}"
 
 
 def test_links_lead_somewhere(pages):
