@@ -37,8 +37,6 @@ def checkout(tmp_path_factory):
     (program,) = re.findall(r"Save this as `watch_tv.txt`:\n\n((?:    .*\n|\n)+)", README)
     (copy / "watch_tv.txt").write_text(re.sub(r"^ {4}", "", program, flags=re.M))
     (copy / "plans.txt").write_bytes((copy / "watch_tv.txt").read_bytes())
-    (copy / "my_programs").mkdir()
-    (copy / "my_programs/watch_tv.txt").write_bytes((copy / "watch_tv.txt").read_bytes())
     return copy
 
 
