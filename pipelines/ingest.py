@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 
 from hearth.datasets.format.home_inference import write_home
 from hearth.datasets.format.row_conversion import graph_of
-from hearth.kb.language.recognition_knowledge import recognizing
+from hearth.kb.language.recognition_knowledge import recognition, recognizing
 from hearth.pipelines.crowd.copied_answers import Copies, pasted
 from hearth.pipelines.crowd.description_lookup import Described
 from hearth.pipelines.crowd.duplicate_records import Repeated
@@ -20,6 +20,7 @@ from hearth.pipelines.engine.settings import DERIVED, Settings
 from hearth.pipelines.engine.source_labels import labelled, salt
 from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.pipelines.readers import (
+    alfred,
     crowd,
     enclosed_json,
     json_records,
@@ -50,6 +51,7 @@ from hearth.storage.rejects import Reject, as_text
 
 SCANNERS: dict[str, Callable[..., Iterator[Item]]] = {
     release.NAME: release.scan,
+    alfred.NAME: alfred.scan,
     crowd.NAME: crowd.scan,
     program_text.NAME: program_text.scan,
     natural_language_plans.NAME: natural_language_plans.scan,
@@ -72,6 +74,7 @@ _NAMED = frozenset({json_records.NAME, LISTED, DOCUMENT, program_tables.NAME, ya
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
+    alfred.NAME: lambda item, salt: [alfred.read(item, salt, recognition())],
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
     program_text.NAME: lambda item, salt: [program_text.read(item)],
     natural_language_plans.NAME: lambda item, salt: [natural_language_plans.read(item)],

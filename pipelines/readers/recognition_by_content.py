@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from hearth.kb.language.plan_lines import plan_line
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers import (
+    alfred,
     crowd,
     enclosed_json,
     json_records,
@@ -276,6 +277,8 @@ def _form_of_list(path: Place, place: str) -> str:
 def _form_of(value: Any) -> str:
     if not isinstance(value, dict):
         return ""
+    if alfred.is_trajectory(value):
+        return alfred.NAME
     return scene_graphs.NAME if graph_in(value) is not None and not records_in_json.is_record(value, {}) else DOCUMENT
 
 
