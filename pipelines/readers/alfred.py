@@ -54,7 +54,7 @@ def read(item: Item, salt: str, knowledge: Knowledge) -> IngestedRow | Reject:
     """Return the record of a program with its description, or of a further description."""
     said = _said(item.value["annotation"])
     if said is None:
-        return Reject.of(Code.BAD_JSON, "a description that is no text", file=item.place,
+        return Reject.of(Code.BAD_JSON, "a description without text", file=item.place,
                          suggestion="it needs `task_desc` and `high_descs`")  # fmt: skip
     title, description, worker = said
     scene = item.value["scene"] if isinstance(item.value["scene"], str) else None

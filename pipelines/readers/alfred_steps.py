@@ -93,7 +93,7 @@ class _Writer:
 
         Args:
             name: its type.
-            key: tells things of one class apart.
+            key: distinguishes things of one class.
         """
         class_name = class_of(name, self.knowledge)
         if not class_name:
@@ -187,7 +187,7 @@ WRITERS = {
 
 
 def _used_next(name: str, later: Sequence[Any]) -> str:
-    """Return what tells the thing apart that is walked to: the receptacle or object of the next action."""
+    """Return the key of the thing that is walked to: the object or receptacle of the next action."""
     for each in later:
         planned = each.get("planner_action") if isinstance(each, dict) else None
         if not isinstance(planned, dict) or planned.get("action") == "GotoLocation":
@@ -202,7 +202,7 @@ def _used_next(name: str, later: Sequence[Any]) -> str:
 
 
 def object_key(planned: Mapping[str, Any]) -> str:
-    """Return what tells an object apart: its type and first place; a slice is the thing that was cut."""
+    """Return the key of an object, its type and first place; a slice is the thing that was cut."""
     return re.sub(r"\|[A-Za-z]+Sliced_\d+$", "", str(planned.get("objectId", "")))
 
 
@@ -213,7 +213,7 @@ def receptacle_type(planned: Mapping[str, Any]) -> str:
 
 
 def receptacle_key(planned: Mapping[str, Any]) -> str:
-    """Return what tells a receptacle apart: its type and place."""
+    """Return the key of a receptacle, its type and place."""
     given = planned.get("coordinateReceptacleObjectId")
     return f"{given[0]}|{given[1:]}" if isinstance(given, list) and given else ""
 
