@@ -11,7 +11,7 @@ from hearth.commands.grouped_faults import alike, report
 from hearth.commands.inputs import read_knowledge
 
 if TYPE_CHECKING:
-    from hearth.interop.scene_graphs.reading import Filling, ReadGraph
+    from hearth.interop.scene_graphs.fillings import Filling, ReadGraph
 
 
 def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool) -> None:
@@ -21,6 +21,7 @@ def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool)
         HearthError: the file or the mapping can't be read, or describes no home.
     """
     from hearth.homes import home_export
+    from hearth.homes.lint import lint
 
     found = read_home(source, mapping)
     written = home_export.write_release(found.graph, out)
@@ -31,11 +32,15 @@ def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool)
             "ids": {str(number): own for number, own in found.ids.items()}})  # fmt: skip
         output.status(len(found.left_out), strict=True)
         return
+    known = read_knowledge(None)
+    faults = lint(found.graph, known)
     report(found.left_out, key=alike)
     output.table(("", "number", "such as"), _rows(found.fillings))
     left = f"; left out: {len(found.left_out):,}" if found.left_out else ""
     output.line(f"{out}: {output.counted(written, 'node')}, {output.counted(len(found.graph.edges), 'edge')}{left}")
-    output.status(len(found.left_out), strict=True)
+    if faults:
+        output.note(f"{output.counted(len(faults), 'fault')} of the home: `hearth home lint {out}` names them.")
+    output.status(len(found.left_out) + len(faults), strict=True)
 
 
 def _rows(fillings: Sequence[Filling]) -> list[tuple[str, int, str]]:

@@ -31,8 +31,9 @@ def class_of(label: str, shape: Shape, knowledge: Knowledge) -> ClassOf:
     for text, how in ((label, ""), (_without_number(label), "number left out")):
         key = key_of(text)
         if key in shape.classes:
-            name = shape.classes[key]
-            return ClassOf(name, "table") if name else ClassOf("", "building")
+            named = shape.classes[key]
+            meant = knowledge.object_class(named) if named else None
+            return ClassOf(meant.name, "table") if meant is not None else ClassOf("", "building")
         known = knowledge.object_class(key) if key else None
         if known is not None:
             return ClassOf(known.name, how or ("name" if key_of(known.name) == key else "other name"))

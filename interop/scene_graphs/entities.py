@@ -69,12 +69,15 @@ class Found:
     entities: list[Entity] = field(default_factory=list)
     links: list[Link] = field(default_factory=list)
     mentions: list[Mention] = field(default_factory=list)
+    described: list[Entity] = field(default_factory=list)
 
 
 def entities_of(data: Any, shape: Shape) -> Found:
     """Return the things and relations in a JSON value, in its order."""
     found = Found()
     _Walk(shape, found).visit(data, "", "", None, 0)
+    called = {key for entity in found.entities for key in entity.keys}
+    found.entities += [entity for entity in found.described if entity.keys[0] not in called]
     called = {key for entity in found.entities for key in entity.keys}
     for mention in found.mentions:
         if mention.text not in called:
@@ -90,6 +93,7 @@ class _Walk:
     def __init__(self, shape: Shape, found: Found) -> None:
         self.shape = shape
         self.found = found
+        self.described: set[str] = set()
 
     def visit(self, value: Any, path: str, group: str, owner: Entity | None, depth: int) -> None:
         """Note what a value holds.
@@ -109,6 +113,8 @@ class _Walk:
         elif isinstance(value, dict):
             grouped = group in self.shape.groups
             for key, each in value.items():
+                if key_of(str(key)) in self.shape.best:
+                    continue
                 below = f"{path}.{key}" if path else str(key)
                 if grouped and isinstance(each, dict):
                     self._element(each, below, group, owner, depth, str(key))
@@ -132,9 +138,8 @@ class _Walk:
             self.visit(each, path, group, owner, depth + 1)
 
     def _entity(self, each: dict[str, Any], path: str, group: str, owner: Entity | None, key: str) -> Entity | None:
-        own = dict(_fields(each))
-        labels = [text for text in _texts(own, self.shape.fields["label"]) if key_of(text) not in self.shape.kinds]
-        label = labels[0] if labels else key
+        own = dict(_fields(_with_best(each, self.shape.best)))
+        label = self._label(own) or key
         if not label:
             return None
         names = _texts(own, self.shape.fields["name"])
@@ -142,22 +147,51 @@ class _Walk:
         keys = tuple(dict.fromkeys(filter(None, (*ids, key, *names))))
         return Entity(path, keys, label, names[0] if names else key or label, own, owner, group)
 
+    def _label(self, own: Mapping[str, Any]) -> str:
+        """Return the word for an entry's class; a word for its kind, or a number, where it has no other."""
+        texts = _texts(own, self.shape.fields["label"])
+        structures = [text for text in texts if self.shape.classes.get(key_of(text), "") is None]
+        words = [text for text in texts if key_of(text) not in self.shape.kinds]
+        numbers = [str(value) for value in _values(own, self.shape.fields["label"]) if type(value) is int]
+        return next(iter((*structures, *words, *numbers, *texts)), "")
+
     def _link(self, each: Any, path: str, group: str) -> Link | None:
         if isinstance(each, dict):
             low = {key_of(str(key)): value for key, value in each.items()}
             source, target = (_reference(low, self.shape.edges[end]) for end in ("source", "target"))
             word = next(iter(_texts(low, self.shape.edges["relation"])), "")
-            return Link(path, source, word, target) if source and target else None
+            if source and target:
+                self._ends(low, path)
+                return Link(path, source, word, target)
+            return None
         if group in self.shape.edges["lists"] and isinstance(each, list) and len(each) >= 3:
-            words = [value for value in each[1:] if isinstance(value, str) and key_of(value) in self._words]
+            known = [value for value in each[1:] if isinstance(value, str) and key_of(value) in self._words]
+            words = known or [value for value in each[2:] if isinstance(value, str)]
             ends = [str(value) for value in each if isinstance(value, str | int) and value not in words]
             if words and len(ends) >= 2:
                 return Link(path, ends[0], words[-1], ends[1])
         return None
 
+    def _ends(self, low: Mapping[str, Any], path: str) -> None:
+        """Note the things that a relation describes in full, once each."""
+        for end in ("source", "target"):
+            value = next((low[name] for name in self.shape.edges[end] if isinstance(low.get(name), dict)), None)
+            entity = None if value is None else self._entity(value, f"{path}.{end}", "", None, "")
+            if entity is not None and entity.keys and entity.keys[0] not in self.described:
+                self.described.add(entity.keys[0])
+                self.found.described.append(entity)
+
     @property
     def _words(self) -> frozenset[str]:
         return frozenset(map(key_of, self.shape.relations))
+
+
+def _with_best(entry: Mapping[str, Any], best: frozenset[str]) -> Mapping[str, Any]:
+    """Return an entry with the first of its guesses in place of their list."""
+    return {
+        key: value[0] if key_of(str(key)) in best and isinstance(value, list) and value else value
+        for key, value in entry.items()
+    }
 
 
 def _fields(entry: Mapping[str, Any], above: str = "", depth: int = 0) -> Iterator[tuple[str, Any]]:

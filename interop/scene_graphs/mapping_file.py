@@ -39,7 +39,7 @@ def read_mapping(path: Path, knowledge: Knowledge) -> Shape:
             line = located_yaml.line_of(name)
             faults.add(Code.UNKNOWN_OBJECT, f"`{label}` is mapped to `{name}`, which is no class", line, hint)
     if faults:
-        raise HearthError(*faults.underlined(text))
+        raise HearthError(faults.underlined(text))
     return shape
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 from hearth.homes.from_graph.layout_from_boxes import has_geometry
 from hearth.homes.node_defaults import filled
@@ -13,6 +13,8 @@ from hearth.interop.scene_graphs import completion
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
 from hearth.interop.scene_graphs.entities import Entity, entities_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of
+from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
+from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
@@ -26,41 +28,6 @@ from hearth.schemas.vocabulary import CHARACTER_CLASS, FIRST_ADDED_ID, ROOM_CATE
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
-
-
-class Filling(NamedTuple):
-    """A kind of thing that was understood, filled in or left out: how often, and some of the cases."""
-
-    what: str
-    number: int
-    examples: tuple[str, ...] = ()
-
-
-CLASSES_BY = {
-    "name": "classes by their names",
-    "other name": "classes by other names",
-    "table": "classes by the table",
-    "number left out": "classes without a number behind them",
-    "building": "parts of the building, left out",
-    "": "things of no class of ours, left out",
-}
-"""Words for the ways in which a class was found; see `ClassOf`."""
-
-
-class ReadGraph(NamedTuple):
-    """A home that was read from a file of another project.
-
-    Attributes:
-        graph: as ours are.
-        fillings: what was understood, filled in and changed.
-        left_out: entries and relations that are not in the graph, each with its place in the file.
-        ids: the file's own id of each node that has one.
-    """
-
-    graph: EnvironmentGraph
-    fillings: tuple[Filling, ...]
-    left_out: tuple[Diagnostic, ...]
-    ids: Mapping[int, str]
 
 
 def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") -> ReadGraph:
@@ -125,10 +92,12 @@ class _Reading:
         kept = [entity for entity in entities if classes[id(entity)].name]
         self._note_classes(entities, classes)
         if not kept:
-            raise HearthError(*self.left_out[:20])
+            raise HearthError(self.left_out[:20])
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
         units = units_of(kept, [None if shaped is None else shaped.size for shaped in shapes], self.shape)
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
+        entries, raised = raised_from_feet(entries, self.knowledge)
+        self.note("places at the foot of things, as all stand on one level", raised)
         rooms = self._named_rooms(ties, entries)
         numbers = _numbers([*rooms.values(), *entries])
         edges = self._edges(ties, entries, rooms, numbers)
@@ -177,7 +146,7 @@ class _Reading:
             name = class_of(text, self.shape, self.knowledge).name
             if id(entity) in kept and self.knowledge.is_room(name):
                 found.setdefault(text, Entry(Entity("", (), text, text, {}), name))
-            elif id(entity) in kept:
+            elif id(entity) in kept and class_of(text, self.shape, self.knowledge).by != "building":
                 self._leave(Code.BAD_GRAPH, f"it stands in or on `{text}`, which is nothing in the file", entity.path)
         self.note("rooms that things only name", list(found))
         if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
@@ -193,10 +162,14 @@ class _Reading:
         by_entity = {id(entry.entity): entry for entry in entries}
         above = holders(ties.ties, lambda entity: id(entity) in by_entity)
         edges: list[Edge] = []
+        between: list[str] = []
         for entry in entries:
             me = numbers[id(entry)]
             for relation, entity in above.get(id(entry.entity), []):
                 other = by_entity[id(entity)]
+                if self.knowledge.is_room(entry.class_name):
+                    between.append(f"{entry.class_name} and {other.class_name}")
+                    continue
                 edges.append(Edge(me, self._held(entry, relation, other), numbers[id(other)]))
         for entity, text in ties.rooms:
             if id(entity) in by_entity and text in rooms:
@@ -206,6 +179,7 @@ class _Reading:
                 pair = (numbers[id(by_entity[id(end)])] for end in (tie.source, tie.target))
                 edges.append(Edge(next(pair), tie.relation, next(pair)))
         self.note("relations of the file", [edge.relation for edge in edges])
+        self.note("rooms in rooms or next to them, left out", between)
         self.note("relations without a counterpart, left out", [word for _, word in ties.unknown_words])
         for path, text in ties.dangling:
             self._leave(Code.BAD_GRAPH, f"a relation names `{text}`, which is nothing in the file", path)
@@ -277,7 +251,8 @@ class _Reading:
         person = completion.with_person(graph, _next(graph))
         self.note("person, in the first room", ["character"] if person is not graph else [])
         graph = self._both_ways(self._measured(person))
-        if self.keeps_boxes and any(edge.relation == "CLOSE" for edge in graph.edges):
+        close = sum(edge.relation == "CLOSE" for edge in graph.edges)
+        if self.keeps_boxes and close >= len(graph.nodes):
             return graph
         near = completion.nearness(graph, self.knowledge)
         for relation in ("CLOSE", "FACING"):

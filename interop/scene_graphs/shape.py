@@ -28,6 +28,7 @@ class Shape:
         fields: field of ours -> names that others have for it, the likeliest first.
         groups: names of lists of things.
         kinds: labels that say what kind of entry it is.
+        best: names of lists of guesses about an entry, the best one first.
         edges: `source`, `target`, `relation` -> names; `lists` -> names of lists of relations.
         relations: word -> relation of ours; with `^` before it where the second thing stands in it to the first.
         flags: name of a flag -> the states of true and of false.
@@ -41,6 +42,7 @@ class Shape:
     fields: Mapping[str, Names]
     groups: frozenset[str]
     kinds: frozenset[str]
+    best: frozenset[str]
     edges: Mapping[str, Names]
     relations: Mapping[str, str]
     flags: Mapping[str, tuple[str, str]]
@@ -59,6 +61,7 @@ def usual() -> Shape:
         fields=MappingProxyType({key: tuple(names) for key, names in data["fields"].items()}),
         groups=frozenset(data["groups"]),
         kinds=frozenset(data["kinds"]),
+        best=frozenset(data["best"]),
         edges=MappingProxyType({key: tuple(names) for key, names in data["edges"].items()}),
         relations=MappingProxyType(by_word(data["relations"])),
         flags=MappingProxyType({name: (true, false) for name, (true, false) in data["flags"].items()}),

@@ -166,7 +166,7 @@ def test_what_the_file_puts_nowhere_is_where_it_usually_is_and_counted():
 def test_every_entry_is_a_node_or_left_out():
     labels = ["fridge", "wall", "rocket", "cup", "floor", "spoon", "gizmo"]
     found = read([{"label": label} for label in labels])
-    building = next(note.number for note in found.fillings if note.what.startswith("parts of the building"))
+    building = next(note.number for note in found.fillings if note.what.startswith("left out, as the table"))
     assert len(classes(found)) + len(found.left_out) + building == len(labels)
 
 
@@ -271,3 +271,77 @@ def test_a_home_of_another_shape_is_one_command(tmp_path):
     assert run("home", "lint", tmp_path / "home.json").exit_code == 0
     (tmp_path / "scan.json").write_text(json.dumps({"objects": [{"label": "fridge"}, {"label": "rocket"}]}))
     assert run("home", "convert", tmp_path / "scan.json", tmp_path / "home.json", "--fill").exit_code == 1
+
+
+def test_any_name_of_a_class_will_do_in_a_mapping(tmp_path):
+    path = tmp_path / "names.yaml"
+    path.write_text("classes: {gizmo: tv, 3: bed}\n")
+    found = read([{"label": "gizmo"}, {"label": 3}], read_mapping(path, KNOWN))
+    assert classes(found) == ["bed", "television"] and found.left_out == ()
+
+
+def test_a_file_of_unknown_things_alone_names_them():
+    with pytest.raises(HearthError) as raised:
+        read([{"label": f"gizmo {letter}"} for letter in "abcdefghijklmnopqrstuvwxyz"])
+    assert len(raised.value.diagnostics) == 20
+
+
+def test_several_faults_of_a_mapping_are_named_together(tmp_path):
+    path = tmp_path / "names.yaml"
+    path.write_text("up: q\nscale: -1\n")
+    with pytest.raises(HearthError) as raised:
+        read_mapping(path, KNOWN)
+    assert len(raised.value.diagnostics) == 2
+
+
+@pytest.mark.parametrize("label", ["unknown", "object", "thing", 7])
+def test_an_entry_without_a_class_is_left_out_by_name(label):
+    found = read([{"label": "fridge"}, {"label": label}])
+    assert len(found.left_out) == 1 and str(label) in found.left_out[0].message
+
+
+def test_rooms_that_are_next_to_one_another_are_not_in_one_another():
+    rooms = [{"id": n, "attributes": {"type": "RoomNodeAttributes", "name": name}} for n, name in
+             enumerate(["kitchen", "bedroom"])]  # fmt: skip
+    bed = {"id": 2, "attributes": {"type": "ObjectNodeAttributes", "name": "bed"}}
+    place = {"id": 3, "attributes": {"type": "PlaceNodeAttributes", "name": "p(0)"}}
+    edges = [{"source": 0, "target": 1}, {"source": 1, "target": 3}, {"source": 3, "target": 2}]
+    found = read({"nodes": [*rooms, bed, place], "edges": edges})
+    assert rooms_of(found)["bed"] == "bedroom" and found.left_out == ()
+    assert not any(source in ("kitchen", "bedroom") for source in rooms_of(found))
+
+
+def test_relations_of_unknown_words_are_counted():
+    data = {
+        "objects": [{"id": 1, "label": "mug"}, {"id": 2, "label": "table"}],
+        "relationships": [[1, 2, 9, "wider than"]],
+    }
+    [note] = [note for note in read(data).fillings if note.what.startswith("relations without")]
+    assert note.number == 1
+
+
+def test_places_at_the_feet_of_things_are_raised():
+    data = [
+        {"label": "fridge", "position": [0, 0, 0], "size": [0.7, 1.8, 0.7]},
+        {"label": "table", "position": [2, 0, 0], "size": [1.2, 0.7, 0.8]},
+    ]
+    heights = {node.class_name: node.box.center[1] for node in read(data).graph.nodes if node.box}
+    assert heights["fridge"] == pytest.approx(0.9) and heights["table"] == pytest.approx(0.35)
+
+
+def test_the_best_guess_of_a_detector_is_the_class():
+    best = {"hypothesis": {"class_id": "table", "score": 0.9}}
+    size = {"x": 1.2, "y": 0.8, "z": 0.76}
+    found = read({"detections": [{"results": [best, {"hypothesis": {"class_id": "sofa"}}], "bbox": {"size": size}}]})
+    assert classes(found) == ["table"]
+
+
+def test_pairs_of_things_that_are_described_in_full_are_things():
+    pair = {"object1": {"id": 0, "object_tag": "pillow"}, "object2": {"id": 1, "object_tag": "sofa"},
+            "object_relation": "a on b"}  # fmt: skip
+    assert held(read([pair]), "ON") == {("pillow", "sofa")}
+
+
+def test_on_the_floor_is_in_the_room():
+    found = read([{"label": "sofa", "room": "living room"}, {"label": "box", "on": "floor"}])
+    assert found.left_out == () and rooms_of(found)["box"] == "living_room"
