@@ -61,6 +61,7 @@ def program(
     known = default()
     home, scene = _scene(home, graph, homes, known)
     execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)
+    changes = _changes(scene, home, execution, known)
     place = with_geometry(scene, home, known)
     out.mkdir(parents=True, exist_ok=True)
     title, size = f"{execution.program.title}, in {home}", (width, _height(width, mode))
@@ -71,11 +72,14 @@ def program(
         made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities or "rgb,instance_ids"))
     failure = in_program(execution.failure, execution.program) if execution.failure else None
     if as_json:
-        facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made}
+        facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made,
+                 "home_changes": changes}  # fmt: skip
         output.emit({**facts, **made})
     else:
         note = place.note(home)
         output.line(note, end="\n" if note else "")
+        if changes:
+            output.line(f"The home was changed, so that the program runs: {'; '.join(changes)}.")
         output.line(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
         if "shows" in made:
             output.line(_shown(made["shows"]))
@@ -325,6 +329,18 @@ def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, 
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, in_program(trial, program, code=False))
     return trial.execution
+
+
+def _changes(scene: EnvironmentGraph, home: str, execution: Execution, known: Knowledge) -> list[str]:
+    """Return the objects that were added to a home, and the states and relations that were changed, counted."""
+    from hearth.commands.home_changes_before_run import additions, names_of
+    from hearth.simulation.world.home import Home
+    from hearth.simulation.world.world import World
+
+    before = World.start(Home.from_graph(scene, home, known)).graph()
+    after = execution.worlds[0].graph()
+    found = additions(before, after)._replace(edges=(), removed_edges=())
+    return list(found.lines(names_of(before, after)))
 
 
 def _write(out: Path, shot: Snapshot, modalities: list[str]) -> list[str]:
