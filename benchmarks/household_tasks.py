@@ -5,10 +5,10 @@
     python benchmarks/household_tasks.py --out /tmp/household.jsonl --summary    what is in the file
 
 A line of the file is a task that was checked; what is in it is not done again, so that a run may be stopped. Checked
-are: nothing of the goal holds at the start; the expert's instructions, given to the engine one by one, reach the goal in
-the ticks that are said; the instruction read back gives the goal; and whether the human-like agent, which sees only the
-room it is in, reaches the goal in time. The summary also looks for instructions, goals and programs of other splits in
-train.
+are: nothing of the goal holds at the start; the expert's instructions, given to the engine one by one, reach the goal
+in the ticks that are said; the instruction read back gives the goal; and whether the human-like agent, which sees only
+the room it is in, reaches the goal in time. The summary also looks for instructions, goals and programs of other splits
+in train.
 """
 
 from __future__ import annotations

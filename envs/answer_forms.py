@@ -29,6 +29,7 @@ IDLE = frozenset({"look", "look around", "inventory", "check inventory", "do not
 
 _FENCE = re.compile(r"```[a-z]*\s*\n?(.*?)\n?```", re.DOTALL)
 _PROGRAM = re.compile(r"<([^>]*)> \((\d+)\)")
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_, ]*(?<! )")
 _NUMBERED = re.compile(r"\b([a-z][a-z_]*(?: [a-z_]+)?) (\d{1,9})\b", re.IGNORECASE)
 _FIELDS = ("command", "action", "answer", "input")
 
@@ -60,6 +61,8 @@ def read_answer(answer: object, view: View, legal: Legal, protocol: Protocol) ->
 
 def command_line(answer: str) -> str:
     """Return the command in an answer: of a tool call, of the last `Action:`, or its last line."""
+    if _PLAIN.fullmatch(answer):
+        return answer
     fenced = _FENCE.findall(answer)
     text = fenced[-1] if fenced else answer
     if called := _called(text.strip()):
