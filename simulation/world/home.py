@@ -247,22 +247,22 @@ class Home:
 
     @cached_property
     def seen(self) -> ValuesByMovement[int]:
-        """What characters see; `visible_nodes` fills it."""
+        """Return the table of the nodes that characters see; `visible_nodes` fills it."""
         return ValuesByMovement()
 
     @cached_property
     def walkable(self) -> ValuesByMovement[int]:
-        """What characters can walk to; `reach` fills it."""
+        """Return the table of the nodes that characters can walk to; `reach` fills it."""
         return ValuesByMovement()
 
     @cached_property
     def hidden(self) -> ValuesByMovement[int]:
-        """What is in closed things; `visible_nodes` fills it."""
+        """Return the table of the nodes in closed things; `visible_nodes` fills it."""
         return ValuesByMovement()
 
     @cached_property
     def free_places(self) -> ValuesByMovement[int]:
-        """Seats and beds that are free; `actions.posture` fills it."""
+        """Return the table of free seats and beds; `actions.posture` fills it."""
         return ValuesByMovement()
 
     @cached_property
