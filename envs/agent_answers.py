@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, NoReturn
+from typing import Any
 
 from hearth.agents.protocol import Choice
 from hearth.envs.json_observations import instruction_text, seen_instances
@@ -19,6 +19,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.agent_messages import ASK, TELL, Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failure_words import usual_remedy, why
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import normal_name, parse_steps
@@ -190,9 +191,14 @@ def _bound(ref: ObjectRef, view: View) -> ObjectRef:
     seen = [home.ids[i] for i in indices(some)]
     if ref.node is not None:
         found = ref.node if view.sees(ref.node) else None
+        first = ", ".join(map(str, seen[:8]))
         if found is not None and found not in seen:
             name = home.classes[home.index[found]]
-            raise HearthError.of(Code.UNBOUND, f"{found} is `{name}`, not `{ref.name}`", suggestion=f"{name} {found}")
+            raise HearthError.of(
+                Code.UNBOUND,
+                f"{found} is `{name}`, not `{ref.name}`",
+                suggestion=f"you see {first}" if seen else f"{name} {found}",
+            )
     elif ref.instance == 0 and len(seen) > 1:
         first = ", ".join(map(str, seen[:8]))
         raise HearthError.of(Code.AMBIGUOUS, f"which `{ref.name}`?", suggestion=f"you see {first}")
@@ -210,10 +216,7 @@ def _need_legal(step: Step, view: View, legal: Legal) -> None:
     if step in legal:
         return
     result = act(as_seen(view.world, view.mask), step)
+    remedy = "take one of the legal instructions"
     if isinstance(result, Failure):
-        _refuse(result.code, replace(result, tick=view.tick).message().removeprefix(f"{result.code}: "))
-    _refuse(Code.NOT_ALLOWED, f"[{step.action}] is not among what you may do here")
-
-
-def _refuse(code: Code, message: str) -> NoReturn:
-    raise HearthError.of(code, message, suggestion="take one of the legal instructions")
+        raise HearthError.of(result.code, why(result), suggestion=usual_remedy(result) or remedy)
+    raise HearthError.of(Code.NOT_ALLOWED, f"[{step.action}] is not among what you may do here", suggestion=remedy)

@@ -1,4 +1,4 @@
-"""What the texts of a home's worlds share: names and sets of nodes, and how seen things are placed and what they are.
+"""Values that the texts of a home's worlds share: names and sets of nodes, the places and states of seen things.
 
 Worlds share what did not change between ticks, so that these values recur; each is worked out once and kept by what it
 depends on.
@@ -28,7 +28,7 @@ SAID_STATES = tuple(
     for name, number in STATE_ID.items()
     if name not in USUAL and name != "OFF"
 )
-"""States that texts say: number, words, and whether only doors and what things are put in have it said."""
+"""States that texts say: number, words, and whether only doors and containers have it said."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ class Layout:
         hollow: nodes that things are put in.
         opened: nodes that can be opened.
         placements: of seen things; `placement` fills it.
-        texts: of places with what is on and in them, by all that they depend on; `compact_text` fills it.
+        texts: of places with the things on and in them, by all that they depend on; `compact_text` fills it.
     """
 
     home: Home

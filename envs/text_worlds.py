@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
-from hearth.envs.compact_text import compact, printable, wanted_nodes
+from hearth.envs.compact_text import compact, printable, said_step, wanted_nodes
 from hearth.envs.rewards import USUAL_REWARDS, Reward
 from hearth.envs.session import MOST_TICKS
 from hearth.envs.text_protocol_settings import Protocol as Words
@@ -24,7 +24,7 @@ from hearth.simulation.observation.visible_nodes import visible
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
-_TICK = re.compile(r"^tick \d+, ")
+_BRACKETED = re.compile(r"\[([A-Za-z]+)\]|<([a-z_ ]+)>(?: \(\d+\))?")
 
 
 class Task(Protocol):
@@ -140,8 +140,13 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
 
 def reason(fault: Diagnostic) -> str:
     """Return the reason for a refusal and its remedy, in characters that can be printed."""
-    remedy = f" ({fault.suggestion})" if fault.suggestion else ""
-    return printable(f"{fault.code}: {_TICK.sub('', fault.message)}{remedy}")
+    remedy = f" ({_in_words(fault.suggestion)})" if fault.suggestion else ""
+    return printable(f"{fault.code}: {_in_words(fault.message)}{remedy}")
+
+
+def _in_words(text: str) -> str:
+    """Return the words of a fault with actions and things as commands write them: `Walk`, not `[Walktowards]`."""
+    return _BRACKETED.sub(lambda found: said_step(found[1] or found[2]), text)
 
 
 def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Legal]) -> tuple[TextWorld, float]:

@@ -205,7 +205,7 @@ def walked_to(world: World, number: int, doors: int) -> int:
     carried = (_held(world) | home.characters) & home.everything
     moved = here.displaced(world) & home.everything & ~carried
     found = reached & ~carried & ~moved | _at_places(world, here, moved, reached)
-    for agent in world.agents:  # who is carried or carries is at one point
+    for agent in world.agents:  # a character and all that it carries are at one point
         if agent.pose is not None:
             things = (agent.bit | agent.held) & carried
             carried ^= things

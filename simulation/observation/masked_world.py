@@ -25,7 +25,7 @@ def as_seen(world: World, mask: int) -> World:
 
 
 _LAST: list[tuple[World, int, World]] = []
-"""The last world: what an agent may do and what it sees of its goal ask for the same one."""
+"""The last world: the masks of legal actions and the counts of a goal ask for the same one."""
 
 
 def _seen(agent: Agent, mask: int) -> Agent:

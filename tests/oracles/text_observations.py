@@ -14,6 +14,7 @@ from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, 
 from hearth.envs.text_agent import USUAL, plain
 from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failure_words import sentence
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import Name
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, STATE_ID
@@ -197,7 +198,7 @@ class _Writer:
             return ""
         if self.stopped:
             return f"{said_step(plain(last.instruction))} - on the way, for something wanted is in sight."
-        failed = "" if last.failure is None else f"FAILED: {seen_failure(last.failure, self.view).message()}"
+        failed = "" if last.failure is None else f"FAILED: {sentence(seen_failure(last.failure, self.view))}"
         return f"{said_step(plain(last.instruction))} - {failed or 'done'}."
 
     def others(self) -> Iterator[str]:
