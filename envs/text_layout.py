@@ -1,7 +1,7 @@
 """Values that the texts of a home's worlds share: names and sets of nodes, the places and states of seen things.
 
-Worlds share what did not change between ticks, so that these values recur; each is worked out once and kept by what it
-depends on.
+Worlds share all that did not change between ticks, so that these values recur; each is worked out once and kept by all
+that it depends on.
 """
 
 from __future__ import annotations

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
@@ -28,7 +29,10 @@ _BRACKETED = re.compile(r"\[([A-Za-z]+)\]|<([a-z_ ]+)>(?: \(\d+\))?")
 
 
 class Task(Protocol):
-    """A task: an id, a goal, a start; `instruction`, where it has one, is the goal as somebody says it."""
+    """A task: an id, a goal, a start.
+
+    It may have more: `instruction`, the goal as somebody says it, and `rules`, those of actions in its challenge.
+    """
 
     @property
     def id(self) -> str:
@@ -53,7 +57,7 @@ class Play:
         limit: ticks after which a world ends.
         reward: of a tick.
         travel: whether a walk goes on until one arrives.
-        rules: of actions.
+        rules: of actions, for tasks that have none of their own.
         partial: whether the agent sees only the area around it.
     """
 
@@ -106,6 +110,17 @@ class TextWorld:
     def over(self) -> bool:
         """Return whether no command can follow."""
         return self.won or self.cut_off
+
+
+def fitted(play: Play, task: Task) -> Play:
+    """Return the settings of a task's worlds: a task of a challenge is played by the rules of the challenge."""
+    rules = getattr(task, "rules", play.rules)
+    return play if rules == play.rules else _ruled(play, rules)
+
+
+@lru_cache(maxsize=64)
+def _ruled(play: Play, rules: Rules) -> Play:
+    return replace(play, rules=rules)
 
 
 def begun(task: Task, play: Play, knowledge: Any) -> TextWorld:

@@ -210,7 +210,7 @@ def test_plain_numbered_steps_are_of_no_form():
         "Act 1: go to fridge 1\nObs 1: OK.\nAct 2: open fridge 1\nObs 2: Nothing happens.\nAct 3: close fridge 1\n",
     ],
 )
-def test_a_command_in_vain_is_a_step_with_a_warning(knowledge, text):
+def test_a_command_without_effect_is_a_step_with_a_warning(knowledge, text):
     found = parse_steps(text, 0, "a log", knowledge)
     assert len(found.program.steps) == 3 and not found.faults
     (warning,) = found.warnings

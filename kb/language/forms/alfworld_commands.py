@@ -54,7 +54,7 @@ _NAMES = {
 NOTHING = re.compile(r"\s*(?:(?:obs|observation)\s*\d*\s*:)?\s*nothing happens\.?\s*", re.IGNORECASE)
 """The game's answer to a command that changed nothing."""
 
-_IN_VAIN = Refusal(
+_NO_EFFECT = Refusal(
     "the game answered that nothing happens; the step is kept", "leave it out if it is not meant", is_warning=True
 )
 
@@ -93,25 +93,25 @@ def _fits(lines: Sequence[str]) -> bool:
 def _lines(lines: Sequence[str]) -> list[Placed]:
     """Return the commands; once a line begins with `>`, the others are what the game answered."""
     is_log = any(line.lstrip().startswith(">") for line in lines)
-    in_vain = rows_in_vain(lines) if is_log else frozenset()
-    return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "", in_vain)
+    without_effect = rows_without_effect(lines) if is_log else frozenset()
+    return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "", without_effect)
 
 
 def doubted(placed: Placed) -> Placed:
     """Return a step with the warning that the game answered that nothing happens."""
-    return placed._replace(line=placed.line._replace(why=_IN_VAIN))
+    return placed._replace(line=placed.line._replace(why=_NO_EFFECT))
 
 
-def rows_in_vain(lines: Sequence[str]) -> frozenset[int]:
+def rows_without_effect(lines: Sequence[str]) -> frozenset[int]:
     """Return the rows of commands that the game answers with "Nothing happens"."""
     said = [row for row, line in enumerate(lines) if line.strip()]
     return frozenset(row for row, after in pairwise(said) if NOTHING.fullmatch(lines[after]))
 
 
-def read(lines: Sequence[str], words_of: Callable[[str], str], in_vain: Collection[int] = ()) -> list[Placed]:
+def read(lines: Sequence[str], words_of: Callable[[str], str], without_effect: Collection[int] = ()) -> list[Placed]:
     """Return the steps of the lines of which `words_of` gives words; title and description stand above the first.
 
-    Commands in vain are steps, with a warning.
+    Commands without an effect are steps, with a warning.
     """
     from hearth.kb.language.plan_lines import plan_line
 
@@ -121,7 +121,7 @@ def read(lines: Sequence[str], words_of: Callable[[str], str], in_vain: Collecti
         words = _words(words_of(raw))
         if words and (meant := command(words)):
             begun = True
-            found.append(doubted(step(row, meant)) if row in in_vain else step(row, meant))
+            found.append(doubted(step(row, meant)) if row in without_effect else step(row, meant))
         elif ruled := _RULED.fullmatch(raw[:200]):
             found.append(title(row, ruled[1]))
         elif words and begun and not _NO_STEP.fullmatch(words):
