@@ -300,7 +300,7 @@ def _literal(literal: Literal[Name], wanted: int, place: Layout, protocol: Proto
 
 
 def _term(term: Name, place: Layout) -> str:
-    """Return what a goal names, as observations name it; which furniture a goal is about is no secret."""
+    """Return what a goal names, as observations name it; everybody may know which furniture a goal is about."""
     known = place.home.index
     return place.names[known[term]] if isinstance(term, int) and term in known else str(term)
 

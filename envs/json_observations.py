@@ -43,7 +43,7 @@ def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
         if terms is None:
             yield SeenLiteral(literal, wanted, None)
             continue
-        masks = [next((found for each in sets if (found := each & mask)), 0) for sets in terms]
+        masks = [next((some for each in sets if (some := each & mask)), 0) for sets in terms]
         if len(masks) == 1:
             found = Candidates(literal, masks[0], 0, by_target=False)
         else:

@@ -104,7 +104,8 @@ def layout(home: Home, protocol: Protocol) -> Layout:
         found["not_targets"] |= bit * (name in protocol.not_targets)
         found["hollow"] |= bit * known.affords("PutIn", 1, name)
         found["opened"] |= bit * known.affords("Open", 0, name)
-    return Layout(home, tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
+    names = tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes))
+    return Layout(home, names, **found, placements=ValuesByMovement(), texts={})
 
 
 def placement(world: World, shown: int, place: Layout) -> Placement:
@@ -164,8 +165,8 @@ def stated(place: Layout, rows: tuple[int, ...], doors: int, room: int | None) -
     for i in indices(doors):
         rooms = indices(home.between[i] & home.rooms)
         found.setdefault(i, []).extend(f"to {home.classes[to]}" for to in rooms if home.ids[to] != room)
-    words = {i: f" ({', '.join(facts)})" for i, facts in found.items() if facts}
-    return Stated(words, sum(1 << i for i in words))
+    said = {i: f" ({', '.join(facts)})" for i, facts in found.items() if facts}
+    return Stated(said, mask_of(said))
 
 
 def said_rows(world: World, kept: int, place: Layout) -> tuple[int, ...]:

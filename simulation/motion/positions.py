@@ -209,8 +209,8 @@ def walked_to(world: World, number: int, doors: int) -> int:
         if agent.pose is not None:
             things = (agent.bit | agent.held) & carried
             carried ^= things
-            (there,) = ends(world, here, agent.index)
-            if any(ground.joined(cell, there, doors) for cell in cells):
+            (standing,) = ends(world, here, agent.index)
+            if any(ground.joined(cell, standing, doors) for cell in cells):
                 found |= things
     for i in indices(carried):
         there = ends(world, here, i)

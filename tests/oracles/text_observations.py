@@ -180,7 +180,7 @@ class _Writer:
         return phrases[literal.name].format(count=count, subject=subject, target=target)
 
     def _term(self, term: Name) -> str:
-        """Return what a goal names, as observations name it; which furniture a goal is about is no secret."""
+        """Return what a goal names, as observations name it; everybody may know which furniture a goal is about."""
         return self._name(term) if isinstance(term, int) and term in self.home.index else str(term)
 
     def me(self) -> str:
