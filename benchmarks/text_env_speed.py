@@ -127,7 +127,7 @@ def compare(other: Path, ticks: int) -> None:
     each = ticks // CHUNK
     for home in library.names():
         for name in ("first time", "once more"):
-            pairs = [tuple(_turn(process) for process in turns) for _ in range(each)]
+            pairs = [tuple(turn(process) for process in turns) for _ in range(each)]
             before, after = (each * CHUNK / sum(pair[n] for pair in pairs) for n in (0, 1))
             ratio = median(pair[0] / pair[1] for pair in pairs)
             print(
@@ -137,7 +137,8 @@ def compare(other: Path, ticks: int) -> None:
         process.communicate()
 
 
-def _turn(process: subprocess.Popen[str]) -> float:
+def turn(process: subprocess.Popen[str]) -> float:
+    """Return the seconds of a process's next commands."""
     assert process.stdin is not None and process.stdout is not None
     process.stdin.write("\n")
     process.stdin.flush()

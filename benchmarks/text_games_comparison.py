@@ -82,6 +82,8 @@ def main() -> None:
     if asked.turns:
         take_turns(*asked.turns, asked.ticks)
         return
+    from text_env_speed import turn  # the other environment, which takes turns, has no Hearth
+
     for home, game in zip(HOMES, GAMES, strict=True):
         turns = []
         for python, which, name in ((sys.executable, "ours", home), (asked.python, "theirs", game)):
@@ -95,14 +97,6 @@ def main() -> None:
             process.communicate()
         here, there = (asked.ticks / seconds for seconds in sums)
         print(f"{home:16} {here:6,.0f} steps/s   {game:13} {there:6,.0f} steps/s   {here / there:.2f}")
-
-
-def turn(process: subprocess.Popen[str]) -> float:
-    """Return the seconds of a process's next commands."""
-    assert process.stdin is not None and process.stdout is not None
-    process.stdin.write("\n")
-    process.stdin.flush()
-    return float(process.stdout.readline())
 
 
 if __name__ == "__main__":
