@@ -101,12 +101,14 @@ class Lineup:
         """Return the same lineup, if its helper can work in a challenge.
 
         Raises:
-            HearthError: BAD_ARGUMENT: it would end every episode there: it talks where nobody may, or its network was
-                trained for the goals of another challenge.
+            HearthError: BAD_ARGUMENT: it would end every episode there: there is one agent alone, it talks where nobody
+                may, or its network was trained for the goals of another challenge.
         """
         kind = ONLINE.get(self.helper)
         why = ""
-        if kind and kind.talks and not which.messages:
+        if self.helper != NOBODY and which.agents < 2:
+            why = "its tasks are for one agent"
+        elif kind and kind.talks and not which.messages:
             why = f"it talks, and in `{which.name}` nobody may say anything"
         elif kind and kind.network and which.grammar.sets != challenge(PROPOSED).grammar.sets:
             why = f"its network was trained for the goals of `{PROPOSED}`"

@@ -38,6 +38,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import derive, rng
+from hearth.simulation.rules import Rules
 from hearth.simulation.world.world import World
 
 ACTIVITY = "activity"
@@ -74,6 +75,11 @@ class HouseholdTask:
     min_ticks: int
     split: str
     activity: str = ""
+
+    @property
+    def rules(self) -> Rules:
+        """Return how actions are read, as in the other challenges."""
+        return RULES
 
     def start(self, knowledge: Knowledge | None = None) -> World:
         """Return the world in which it starts; equal every time."""

@@ -70,6 +70,12 @@ def _homes(name: str) -> tuple[str, ...]:
     return (*(ours * (len(generated) // max(1, len(ours)))), *generated)
 
 
+@cache
+def every_home() -> frozenset[str]:
+    """Return the names of the homes of all splits."""
+    return frozenset(home for name in settings()["splits"] for home in split_named(name).homes)
+
+
 def need_two_agents(name: str) -> None:
     """Refuse the challenge whose tasks are for one agent.
 

@@ -16,6 +16,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT
 from hearth.schemas.rng import derive, rng
+from hearth.simulation.rules import Rules
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -51,6 +52,11 @@ class Task:
     def family(self) -> str:
         """Return the names of its goal sets, joined."""
         return "+".join(self.sets)
+
+    @property
+    def rules(self) -> Rules:
+        """Return how actions are read in its challenge."""
+        return challenge(self.challenge).rules
 
     @property
     def instruction(self) -> str:

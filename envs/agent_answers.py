@@ -9,14 +9,17 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NoReturn
+from functools import lru_cache
+from typing import Any
 
 from hearth.agents.protocol import Choice
 from hearth.envs.json_observations import instruction_text, seen_instances
 from hearth.kb.action_grammar import check
+from hearth.kb.knowledge import Knowledge
 from hearth.schemas.agent_messages import ASK, TELL, Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.failure_words import usual_remedy, why
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import normal_name, parse_steps
@@ -118,7 +121,7 @@ def by_text(text: str, view: View, legal: Legal) -> Step | None:
     if line.lower() == WAIT:
         return None
     step = _formal(line, view) if line.startswith(("[", "<")) else _plain(line, view)
-    step = replace(step, agent=view.agent, joins=False)
+    step = Step(step.action, step.objects, view.agent, modifiers=step.modifiers)
     _need_legal(step, view, legal)
     return step
 
@@ -131,30 +134,48 @@ def _formal(line: str, view: View) -> Step:
         raise HearthError.of(Code.SYNTAX, f"{len(found)} instructions where one is expected")
     if line.startswith("<") and found[0].agent != view.agent:
         raise HearthError.of(Code.UNKNOWN_AGENT, f"an instruction of agent {found[0].agent}; you are {view.agent}")
-    (step,) = _checked(found[0], view, line).steps
+    (step,) = _checked(found[0], view.world.home.knowledge, line).steps
     return replace(step, objects=tuple(_bound(ref, view) for ref in step.objects))
 
 
 def _plain(line: str, view: View) -> Step:
+    step = _read_plainly(line, view.world.home.knowledge)
+    return Step(step.action, tuple([_bound(ref, view) for ref in step.objects]))
+
+
+@lru_cache(maxsize=4096)
+def _read_plainly(line: str, known: Knowledge) -> Step:
+    """Return the instruction of a plain command, with the numbers that it gives."""
     word, _, rest = line.partition(" ")
     parts = [_NAMED.fullmatch(part.strip()) for part in rest.split(",")] if rest.strip() else []
     matches = [part for part in parts if part is not None]
     if not word.isalpha() or len(matches) < len(parts):
         remedy = "a number, `wait`, or an instruction: `Grab cup 41`, `PutBack cup 41, table 55`"
         raise HearthError.of(Code.NOT_UNDERSTOOD, f"`{line[:60]}` is not an answer", suggestion=remedy)
-    known = view.world.home.knowledge
     action = known.action(word)
     if action is None:
         near = known.suggest(word, "action")
         remedy = f"did you mean {near[0]}?" if near else ""
         raise HearthError.of(Code.UNKNOWN_ACTION, f"no action is called `{word[:60]}`", suggestion=remedy)
-    given = [ObjectRef(normal_name(part[1]), 1, int(part[2]) if part[2] else None) for part in matches]
-    step = _checked(Step(action.name, tuple(given)), view, line).steps[0]
-    return replace(step, objects=tuple(_bound(replace(ref, instance=0), view) for ref in step.objects))
+    names = tuple([normal_name(part[1]) for part in matches])
+    nodes = [int(part[2]) if part[2] else None for part in matches]
+    checked = _canonical(action.name, names, known)
+    if checked is None:
+        given = [ObjectRef(name, 1, node) for name, node in zip(names, nodes, strict=True)]
+        checked = tuple([ref.name for ref in _checked(Step(action.name, tuple(given)), known, line).steps[0].objects])
+    return Step(action.name, tuple([ObjectRef(name, 0, node) for name, node in zip(checked, nodes, strict=True)]))
 
 
-def _checked(step: Step, view: View, line: str) -> Program:
-    program, faults = check(Program(steps=(step,), lines=(1,)), view.world.home.knowledge, source=[line])
+@lru_cache(maxsize=4096)
+def _canonical(action: str, names: tuple[str, ...], known: Knowledge) -> tuple[str, ...] | None:
+    """Return the canonical names of an action's things; None where they are at fault, or equal."""
+    step = Step(action, tuple([ObjectRef(name, 1) for name in names]))
+    program, faults = check(Program(steps=(step,), lines=(1,)), known)
+    return None if faults else tuple([ref.name for ref in program.steps[0].objects])
+
+
+def _checked(step: Step, known: Knowledge, line: str) -> Program:
+    program, faults = check(Program(steps=(step,), lines=(1,)), known, source=[line])
     if faults:
         raise HearthError(faults)
     return program
@@ -163,15 +184,24 @@ def _checked(step: Step, view: View, line: str) -> Program:
 def _bound(ref: ObjectRef, view: View) -> ObjectRef:
     """Return the seen node that is meant: by its id, by its number among the seen of its class, or as the only one."""
     home = view.world.home
-    seen = [home.ids[i] for i in indices(seen_instances(ref.name, home, view.mask))]
+    some = seen_instances(ref.name, home, view.mask)
+    at = home.index.get(ref.node, -1) if ref.node is not None else -1
+    if at >= 0 and some >> at & 1:
+        return ObjectRef(home.classes[at], 0, ref.node)
+    seen = [home.ids[i] for i in indices(some)]
     if ref.node is not None:
         found = ref.node if view.sees(ref.node) else None
+        first = ", ".join(map(str, seen[:8]))
         if found is not None and found not in seen:
             name = home.classes[home.index[found]]
-            raise HearthError.of(Code.UNBOUND, f"{found} is `{name}`, not `{ref.name}`", suggestion=f"{name} {found}")
+            raise HearthError.of(
+                Code.UNBOUND,
+                f"{found} is `{name}`, not `{ref.name}`",
+                suggestion=f"you see {first}" if seen else f"{name} {found}",
+            )
     elif ref.instance == 0 and len(seen) > 1:
-        some = ", ".join(map(str, seen[:8]))
-        raise HearthError.of(Code.AMBIGUOUS, f"which `{ref.name}`?", suggestion=f"you see {some}")
+        first = ", ".join(map(str, seen[:8]))
+        raise HearthError.of(Code.AMBIGUOUS, f"which `{ref.name}`?", suggestion=f"you see {first}")
     else:
         found = seen[max(ref.instance, 1) - 1] if max(ref.instance, 1) <= len(seen) else None
     if found is None:
@@ -186,10 +216,7 @@ def _need_legal(step: Step, view: View, legal: Legal) -> None:
     if step in legal:
         return
     result = act(as_seen(view.world, view.mask), step)
+    remedy = "take one of the legal instructions"
     if isinstance(result, Failure):
-        _refuse(result.code, replace(result, tick=view.tick).message().removeprefix(f"{result.code}: "))
-    _refuse(Code.NOT_ALLOWED, f"[{step.action}] is not among what you may do here")
-
-
-def _refuse(code: Code, message: str) -> NoReturn:
-    raise HearthError.of(code, message, suggestion="take one of the legal instructions")
+        raise HearthError.of(result.code, why(result), suggestion=usual_remedy(result) or remedy)
+    raise HearthError.of(Code.NOT_ALLOWED, f"[{step.action}] is not among what you may do here", suggestion=remedy)

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from hearth.envs.agent_answers import WAIT, by_text
+from hearth.envs.taken_from import need_there, taken_from
 from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.language.forms.alfworld_commands import command
 from hearth.kb.language.forms.react_logs import act_of
 from hearth.kb.language.step_understanding import understand_exactly
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Step
 from hearth.schemas.syntax import normal_name
@@ -27,8 +29,12 @@ WALK = "Walktowards"
 IDLE = frozenset({"look", "look around", "inventory", "check inventory", "do nothing", "noop", "stop"})
 """Answers of other games that do nothing here."""
 
+_TWO = re.compile(r"\bthen\b|;|[a-z0-9]\. +[A-Za-z]|, and \b|\band [a-z]+ (?:the|an?)\b", re.IGNORECASE)
+"""Signs of a second command; only looked for where a line is not understood."""
+
 _FENCE = re.compile(r"```[a-z]*\s*\n?(.*?)\n?```", re.DOTALL)
 _PROGRAM = re.compile(r"<([^>]*)> \((\d+)\)")
+_PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_, ]*(?<! )")
 _NUMBERED = re.compile(r"\b([a-z][a-z_]*(?: [a-z_]+)?) (\d{1,9})\b", re.IGNORECASE)
 _FIELDS = ("command", "action", "answer", "input")
 
@@ -37,7 +43,8 @@ def read_answer(answer: object, view: View, legal: Legal, protocol: Protocol) ->
     """Return the legal instruction that an answer means; None for `wait`.
 
     Raises:
-        HearthError: NOT_TEXT, EMPTY, LINE_TOO_LONG, and the faults of `agent_answers.by_text`.
+        HearthError: NOT_TEXT, EMPTY, LINE_TOO_LONG; SYNTAX: more than one command; NOT_SEEN: a thing is not where the
+            answer says; and the faults of `agent_answers.by_text`.
     """
     if not isinstance(answer, str):
         message = f"an answer is {type(answer).__name__}, not text"
@@ -51,6 +58,19 @@ def read_answer(answer: object, view: View, legal: Legal, protocol: Protocol) ->
     if line.lower().rstrip(".") in IDLE:
         return None
     try:
+        if taken := taken_from(line, view):
+            return need_there(_read(taken.command, view, legal, protocol), taken, view)
+        return _read(line, view, legal, protocol)
+    except HearthError as error:
+        if _TWO.search(line):
+            message = "more than one command"
+            raise HearthError.of(Code.SYNTAX, message, suggestion="give the first alone, then the next") from None
+        raise HearthError([_remedied(fault) for fault in error.diagnostics]) from None
+
+
+def _read(line: str, view: View, legal: Legal, protocol: Protocol) -> Step | None:
+    """Return the instruction of a line: a command, else another game's string or a sentence."""
+    try:
         return by_text(_walks(line, legal, protocol), view, legal)
     except HearthError as error:
         for other in _otherwise(line, view):
@@ -58,8 +78,17 @@ def read_answer(answer: object, view: View, legal: Legal, protocol: Protocol) ->
         raise error
 
 
+def _remedied(fault: Diagnostic) -> Diagnostic:
+    """Return a fault with a remedy that an agent has: it can't change the knowledge."""
+    if fault.suggestion and "--kb" not in fault.suggestion and fault.code is not Code.NOT_UNDERSTOOD:
+        return fault
+    return replace(fault, suggestion="a command as under `Do:`, about things that you see")
+
+
 def command_line(answer: str) -> str:
     """Return the command in an answer: of a tool call, of the last `Action:`, or its last line."""
+    if _PLAIN.fullmatch(answer):
+        return answer
     fenced = _FENCE.findall(answer)
     text = fenced[-1] if fenced else answer
     if called := _called(text.strip()):

@@ -7,26 +7,21 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
-from hearth.envs.json_observations import SeenLiteral, seen_failure, seen_goal, seen_instances
-from hearth.envs.text_agent import USUAL, plain
+from hearth.envs.json_observations import named_nodes, seen_failure, seen_goal
+from hearth.envs.text_agent import plain
+from hearth.envs.text_layout import Layout, Placement, Stated, layout, placement, said_rows, stated
 from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.failure_words import sentence
 from hearth.schemas.goals import Goal
-from hearth.schemas.literals import Name
-from hearth.schemas.vocabulary import CHARACTER_CATEGORY, STATE_ID
+from hearth.schemas.literals import Literal, Name
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.actions.registry import EVERY
-from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation.views import Pose, View
-from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
-
-FURNISHING = frozenset({"Furniture", "Appliances"})
-"""Categories of things that others are put on or in, and that nobody carries."""
 
 FULL, WANTED, COUNTED, SUMMED = range(4)
 """Degrees of detail; each leaves out more to keep to the length.
@@ -44,56 +39,33 @@ IN_SHORT = " In short: "
 MOST_GOAL = 300
 """Characters of the goal's words."""
 
+MOST_TEXTS = 64
+"""Texts that are kept about things at the same places."""
 
-@dataclass(frozen=True)
-class Layout:
-    """Sets of a home's nodes that never change.
-
-    Attributes:
-        names: of each node, as texts have it.
-        built: rooms, walls, floors, characters.
-        fixtures: nodes that are left out unless they are wanted.
-        large: furniture and appliances.
-        not_targets: nodes that are not offered to put things on.
-        hollow: nodes that things are put in.
-        opened: nodes that can be opened.
-    """
-
-    names: tuple[str, ...]
-    built: int
-    fixtures: int
-    large: int
-    not_targets: int
-    hollow: int
-    opened: int
-
-
-@lru_cache(maxsize=256)
-def layout(home: Home, protocol: Protocol) -> Layout:
-    """Return the sets of a home; made once."""
-    known = home.knowledge
-    found = dict.fromkeys(("built", "fixtures", "large", "not_targets", "hollow", "opened"), 0)
-    for i, name in enumerate(home.classes):
-        category, bit = home.node(i).category, 1 << i
-        found["built"] |= bit * (category in UNTOUCHED or category == CHARACTER_CATEGORY)
-        found["fixtures"] |= bit * (name in protocol.fixtures)
-        found["large"] |= bit * (category in FURNISHING)
-        found["not_targets"] |= bit * (name in protocol.not_targets)
-        found["hollow"] |= bit * known.affords("PutIn", 1, name)
-        found["opened"] |= bit * known.affords("Open", 0, name)
-    return Layout(tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
+MOST_PLACES = 4_096
+"""Texts of single places that are kept for a home."""
 
 
 def wanted_nodes(goal: Goal, home: Home, seen: int) -> int:
     """Return the nodes that a goal names among those that are seen."""
-    found = 0
+    fixed, names = _wanted_terms(goal, home)
+    found = fixed
+    for sets in names:
+        found |= next((some for each in sets if (some := each & seen)), 0)
+    return found & seen & ~home.characters
+
+
+@lru_cache(maxsize=256)
+def _wanted_terms(goal: Goal, home: Home) -> tuple[int, tuple[tuple[int, ...], ...]]:
+    """Return the nodes that a goal names by id, and for each class the sets of which the first that is seen counts."""
+    fixed, names = 0, set[tuple[int, ...]]()
     for literal, _ in goal.literals():
         for term in literal.terms:
             if isinstance(term, int):
-                found |= 1 << home.index[term] if term in home.index else 0
+                fixed |= 1 << home.index[term] if term in home.index else 0
             else:
-                found |= seen_instances(term, home, seen)
-    return found & seen & ~home.characters
+                names.add(named_nodes(term, home))
+    return fixed, tuple(names)
 
 
 def compact(
@@ -149,12 +121,15 @@ class _Writer:
         self.world, self.home = view.world, view.world.home
         self.layout = layout(self.home, protocol)
         self.wanted = wanted_nodes(goal, self.home, view.mask)
-        poses = (view.me, *view.others)
-        self.held = sum(1 << self.home.index[node] for pose in poses for node in {*pose.holding, *pose.wearing})
-        self.kept = view.mask & ~self.layout.built & (~self.layout.fixtures | self.wanted)
-        self.states = self._states()
-        self.stated = sum(1 << i for i in self.states)
-        self._place()
+        self.held = 0
+        for pose in (view.me, *view.others):
+            for node in (*pose.holding, *pose.wearing):
+                self.held |= 1 << self.home.index[node]
+        self.keep = ~self.layout.built & (~self.layout.fixtures | self.wanted)
+        self.kept = view.mask & self.keep
+        rows = said_rows(self.world, self.kept, self.layout)
+        self.stated = stated(self.layout, rows, self.home.doors & self.kept, view.me.room)
+        self.placement = placement(self.world, self.kept & ~self.held, self.layout)
 
     def _name(self, node: int) -> str:
         return self.layout.names[self.home.index[node]]
@@ -165,30 +140,18 @@ class _Writer:
     def goal(self, task: str) -> str:
         """Return the line about the goal, with the parts of it that are seen."""
         seen = list(seen_goal(self.wanted_goal, self.view))
-        said = printable(task) or "; ".join(self._said(each) for each in seen)
-        counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
-        return f"Goal: {_shortened(said)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
-
-    def _said(self, each: SeenLiteral) -> str:
-        """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""
-        literal, phrases = each.literal, self.protocol.goals
-        if literal.negated or literal.name not in phrases or len(literal.terms) != 2:
-            return str(literal) + (f": {each.wanted}" if each.wanted > 1 else "")
-        subject, target = (self._term(term) for term in literal.terms)
-        count = f"{each.wanted} " if each.wanted > 1 else ""
-        return phrases[literal.name].format(count=count, subject=subject, target=target)
-
-    def _term(self, term: Name) -> str:
-        """Return what a goal names, as observations name it; which furniture a goal is about is no secret."""
-        return self._name(term) if isinstance(term, int) and term in self.home.index else str(term)
+        wanted = tuple([each.wanted for each in seen])
+        said, end = _goal_words(task, self.wanted_goal, wanted, self.layout, self.protocol)
+        counts = ", ".join([f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None])
+        return f"Goal: {said}{end} You see {counts} done."
 
     def me(self) -> str:
         """Return the line about oneself and the rooms."""
-        me, home = self.view.me, self.home
+        me = self.view.me
         where = f"{me.posture} in {self._name(me.room)}" if me.room is not None else me.posture
         worn = f", wearing {self._names(me.wearing)}" if me.wearing else ""
-        rooms = ", ".join(self.layout.names[i] for i in indices(home.rooms) if home.ids[i] != me.room)
-        return f"You: {where}, holding {self._names(me.holding)}{worn}. Other rooms: {rooms or 'none'}."
+        rooms = _other_rooms(self.layout, me.room)
+        return f"You: {where}, holding {self._names(me.holding)}{worn}. Other rooms: {rooms}."
 
     def last(self) -> str:
         """Return the last command and whether it could be done."""
@@ -197,7 +160,7 @@ class _Writer:
             return ""
         if self.stopped:
             return f"{said_step(plain(last.instruction))} - on the way, for something wanted is in sight."
-        failed = "" if last.failure is None else f"FAILED: {seen_failure(last.failure, self.view).message()}"
+        failed = "" if last.failure is None else f"FAILED: {sentence(seen_failure(last.failure, self.view))}"
         return f"{said_step(plain(last.instruction))} - {failed or 'done'}."
 
     def others(self) -> Iterator[str]:
@@ -208,75 +171,39 @@ class _Writer:
         last = f", tried {said_step(plain(pose.last.instruction))}" if pose.last is not None else ""
         return f"Agent {pose.agent}: here, holding {self._names(pose.holding)}{last}."
 
-    def _states(self) -> dict[int, str]:
-        """Return the unusual states of nodes, and where doors lead."""
-        found: dict[int, list[str]] = {}
-        for name, number in STATE_ID.items():
-            if name in USUAL or name == "OFF":
-                continue
-            nodes = self.world.states[number] & self.kept
-            for i in indices(nodes & (self.layout.hollow | self.home.doors) if name == "CLOSED" else nodes):
-                found.setdefault(i, []).append(name.lower().replace("_", " "))
-        for i in indices(self.home.doors & self.kept):
-            rooms = indices(self.home.between[i] & self.home.rooms)
-            found.setdefault(i, []).extend(
-                f"to {self.home.classes[room]}" for room in rooms if self.home.ids[room] != self.view.me.room
-            )
-        return {i: f" ({', '.join(facts)})" for i, facts in found.items() if facts}
-
     def here(self, detail: int) -> str:
         """Return the seen things, those on and in others behind these."""
         counted = 0 if detail < COUNTED else self.kept & ~(self.wanted | self.layout.large | self.home.doors)
-        said = _counted if detail < SUMMED else _summed
-        return f"Here: {self._group(self.top, counted, said) or 'nothing'}"
-
-    def _place(self) -> None:
-        """Find the seen things that are on and in nothing seen, and the others by their place."""
-        world, shown, opened = self.world, self.kept & ~self.held, self.layout.opened
-        self.top = self.places = 0
-        self.on: dict[int, int] = {}
-        self.inside: dict[int, int] = {}
-        for i in indices(shown):
-            inside, on = edge_rows.inside(world, i) & shown, edge_rows.on(world, i) & shown
-            place, bit = inside or on, 1 << i
-            if not place:
-                self.top |= bit
-                continue
-            at = (place & -place).bit_length() - 1
-            self.places |= 1 << at
-            below = self.inside if inside and opened >> at & 1 else self.on
-            below[at] = below.get(at, 0) | bit
-
-    def _group(self, things: int, counted: int, said: Callable[[Home, int], str]) -> str:
-        """Return some things: those of a class and state together, then those that others are on or in."""
-        places = things & self.places
-        stated = things & self.stated & ~counted & ~places
-        bare = things & ~places & ~stated
-        found = [_by_class(self.home, bare & ~counted, ", ")] if bare & ~counted else []
-        if bare & counted:
-            found.append(said(self.home, bare & counted))
-        groups: dict[tuple[str, str], int] = {}
-        for i in indices(stated):
-            key = self.home.classes[i], self.states[i]
-            groups[key] = groups.get(key, 0) | 1 << i
-        found += [f"{_by_class(self.home, nodes, ', ')}{state}" for (_, state), nodes in groups.items()]
-        found += [self._with_things(i, counted, said) for i in indices(places)]
-        return ", ".join(found)
-
-    def _with_things(self, i: int, counted: int, said: Callable[[Home, int], str]) -> str:
-        on = self._group(self.on.get(i, 0), counted, said)
-        inside = self._group(self.inside.get(i, 0), counted, said)
-        both = f"{on}, in it {inside}" if on and inside else f"in it {inside}" if inside else on
-        state = "" if counted >> i & 1 else self.states.get(i, "")
-        return f"{self.layout.names[i]}{state} [{both}]"
+        texts, key = self.placement.texts, (self.stated, counted, detail == SUMMED)
+        found = texts.get(key)
+        if found is None:
+            said = _counted if detail < SUMMED else _summed
+            places = _PlacesText(self.layout, self.placement, self.stated, counted, said)
+            if len(texts) >= MOST_TEXTS:
+                texts.clear()
+            found = texts[key] = f"Here: {places.group(self.placement.top) or 'nothing'}"
+        return found
 
     def commands(self, detail: int) -> str:
         """Return the sensible commands, without walks."""
+        offered, opened, opens = self._offered(detail), 0, ""
+        if detail == SUMMED:
+            opened, opens = self._offered(COUNTED), _opening(self.home.knowledge)
         lines = ["Walk <room or thing>"]
         for action, masks in self._possible:
-            if line := self._command(action, masks, detail):
+            if not masks:
+                lines.append(action)
+            elif line := self._command(action, masks, opened if action == opens else offered, detail):
                 lines.append(line)
-        return f"Do: {'; '.join([*lines, 'wait'])}"
+        return f"Do: {'; '.join(lines)}; wait"
+
+    def _offered(self, detail: int) -> int:
+        """Return the nodes that commands are listed about."""
+        if detail == FULL:
+            return self.keep
+        large = self.layout.large
+        some = large if detail == WANTED else self.layout.hollow & large if detail == COUNTED else 0
+        return self.keep & (self.wanted | some | self.held)
 
     @cached_property
     def _possible(self) -> list[tuple[str, tuple[int, ...]]]:
@@ -285,31 +212,120 @@ class _Writer:
         listed = _listed_actions(self.home.knowledge, self.protocol)
         return [(each, masks) for each in listed if each in asked and (masks := found.get(each)) is not None]
 
-    def _command(self, action: str, masks: tuple[int, ...], detail: int) -> str:
-        keep = ~self.layout.built & (~self.layout.fixtures | self.wanted)
-        if detail == WANTED:
-            keep &= self.wanted | self.layout.large | self.held
-        elif detail == SUMMED and action != self.home.knowledge.achiever("OPEN"):
-            keep &= self.wanted | self.held
-        elif detail > WANTED:
-            keep &= self.wanted | self.layout.hollow & self.layout.large | self.held
-        if not masks:
-            return action
-        first = masks[0] & keep
+    def _command(self, action: str, masks: tuple[int, ...], offered: int, detail: int) -> str:
+        first, place = masks[0] & offered, self.layout
+        if not first:
+            return ""
         if len(masks) == 1:
             if action == "Grab":
-                first &= ~(self.layout.large | self.held)
+                first &= ~(place.large | self.held)
             return f"{action} {_by_class(self.home, first)}" if first else ""
-        places = masks[1] & keep & ((self.layout.large & ~self.layout.not_targets) | self.wanted)
+        places = masks[1] & offered & ((place.large & ~place.not_targets) | self.wanted)
         if action == "PutIn":
-            places &= self.layout.opened
+            places &= place.opened
         if detail > WANTED:
             places &= self.wanted or places
-        found = [
-            f"{action} {self.layout.names[i]}, {_by_class(self.home, places & ~(1 << i))}"
-            for i in indices(first) if places & ~(1 << i)
-        ]  # fmt: skip
-        return "; ".join(found)
+        return _with_places(action, first, places, place)
+
+
+class _PlacesText:
+    """The words for things by their places."""
+
+    def __init__(
+        self, place: Layout, placed: Placement, states: Stated, counted: int, said: Callable[[Home, int], str]
+    ) -> None:
+        self.layout, self.home, self.placement = place, place.home, placed
+        self.states, self.counted, self.said = states, counted, said
+
+    def group(self, things: int) -> str:
+        """Return some things: those of a class and state together, then those that others are on or in."""
+        if not things:
+            return ""
+        counted = self.counted
+        places = things & self.placement.places
+        stated = things & self.states.nodes & ~counted & ~places
+        bare = things & ~places & ~stated
+        found = [_by_class(self.home, bare & ~counted, ", ")] if bare & ~counted else []
+        if bare & counted:
+            found.append(self.said(self.home, bare & counted))
+        if stated:
+            groups: dict[tuple[str, str], int] = {}
+            for i in indices(stated):
+                key = self.home.classes[i], self.states.words[i]
+                groups[key] = groups.get(key, 0) | 1 << i
+            found += [f"{_by_class(self.home, nodes, ', ')}{state}" for (_, state), nodes in groups.items()]
+        if places:
+            found += [self._with_things(i) for i in indices(places)]
+        return ", ".join(found)
+
+    def _with_things(self, i: int) -> str:
+        """Return a place with the things on it and in it; kept where none of them is a place itself."""
+        on, inside = self.placement.on.get(i, 0), self.placement.inside.get(i, 0)
+        both = on | inside
+        if both & self.placement.places:
+            return self._written(i, on, inside)
+        words, texts = self.states.words, self.layout.texts
+        states = tuple([words[at] for at in indices((both | 1 << i) & self.states.nodes)])
+        key = i, on, inside, (both | 1 << i) & self.states.nodes, states, (both | 1 << i) & self.counted, self.said
+        found = texts.get(key)
+        if found is None:
+            if len(texts) >= MOST_PLACES:
+                texts.clear()
+            found = texts[key] = self._written(i, on, inside)
+        return found
+
+    def _written(self, i: int, on_it: int, in_it: int) -> str:
+        on, inside = self.group(on_it), self.group(in_it)
+        both = f"{on}, in it {inside}" if on and inside else f"in it {inside}" if inside else on
+        state = "" if self.counted >> i & 1 else self.states.words.get(i, "")
+        return f"{self.layout.names[i]}{state} [{both}]"
+
+
+@lru_cache(maxsize=1024)
+def _goal_words(task: str, goal: Goal, wanted: tuple[int, ...], place: Layout, protocol: Protocol) -> tuple[str, str]:
+    """Return the words of a goal, and the stop that they lack."""
+    literals = zip(goal.literals(), wanted, strict=True)
+    said = printable(task) or "; ".join(_literal(literal, number, place, protocol) for (literal, _), number in literals)
+    return _shortened(said), "" if said.endswith((".", "!", "?")) else "."
+
+
+def _literal(literal: Literal[Name], wanted: int, place: Layout, protocol: Protocol) -> str:
+    """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""
+    phrases = protocol.goals
+    if literal.negated or literal.name not in phrases or len(literal.terms) != 2:
+        return str(literal) + (f": {wanted}" if wanted > 1 else "")
+    subject, target = (_term(term, place) for term in literal.terms)
+    count = f"{wanted} " if wanted > 1 else ""
+    return phrases[literal.name].format(count=count, subject=subject, target=target)
+
+
+def _term(term: Name, place: Layout) -> str:
+    """Return what a goal names, as observations name it; everybody may know which furniture a goal is about."""
+    known = place.home.index
+    return place.names[known[term]] if isinstance(term, int) and term in known else str(term)
+
+
+@lru_cache(maxsize=1024)
+def _other_rooms(place: Layout, room: int | None) -> str:
+    """Return the rooms but one."""
+    home = place.home
+    return ", ".join(place.names[i] for i in indices(home.rooms) if home.ids[i] != room) or "none"
+
+
+@lru_cache(maxsize=4096)
+def _with_places(action: str, first: int, places: int, place: Layout) -> str:
+    """Return the commands of an action of two things."""
+    return "; ".join(
+        f"{action} {place.names[i]}, {_by_class(place.home, places & ~(1 << i))}"
+        for i in indices(first)
+        if places & ~(1 << i)
+    )
+
+
+@lru_cache(maxsize=64)
+def _opening(knowledge: Knowledge) -> str:
+    """Return the action that opens things."""
+    return knowledge.achiever("OPEN")
 
 
 @lru_cache(maxsize=64)

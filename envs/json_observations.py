@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 from hearth.schemas.failures import Failure
@@ -36,12 +37,13 @@ class SeenLiteral:
 
 def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
     """Yield the counted literals of a goal and of its parts, with how many of each the agent sees fulfilled now."""
-    world, home = as_seen(view.world, view.mask), view.world.home
-    for literal, wanted in goal.literals():
-        if acts(literal, home) or any(str(term).startswith("?") for term in literal.terms):
+    home, mask = view.world.home, view.mask
+    world = as_seen(view.world, mask)
+    for literal, wanted, terms in _terms(goal, home):
+        if terms is None:
             yield SeenLiteral(literal, wanted, None)
             continue
-        masks = [_among(term, home, view.mask) for term in literal.terms]
+        masks = [next((some for each in sets if (some := each & mask)), 0) for sets in terms]
         if len(masks) == 1:
             found = Candidates(literal, masks[0], 0, by_target=False)
         else:
@@ -49,20 +51,43 @@ def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
         yield SeenLiteral(literal, found.needed(wanted), sum(mask.bit_count() for mask in found.met(world)))
 
 
-def _among(term: Name, home: Home, mask: int) -> int:
-    """Return the seen nodes that a term of a goal stands for.
+@lru_cache(maxsize=256)
+def _terms(goal: Goal, home: Home) -> tuple[tuple[Literal[Name], int, tuple[tuple[int, ...], ...] | None], ...]:
+    """Return the counted literals of a goal, each with the sets of nodes that its terms may stand for.
+
+    No sets of a literal that nobody sees fulfilled: one about actions or with variables.
+    """
+    return tuple(
+        (
+            literal,
+            wanted,
+            None
+            if acts(literal, home) or any(str(term).startswith("?") for term in literal.terms)
+            else tuple(_sets(term, home) for term in literal.terms),
+        )
+        for literal, wanted in goal.literals()
+    )
+
+
+def _sets(term: Name, home: Home) -> tuple[int, ...]:
+    """Return the sets of which the first that is seen is what a term of a goal stands for.
 
     Other names of a class count where it is not seen itself.
     """
     if isinstance(term, int) or term.partition(":")[0] == AGENT:
-        return nodes(term, home) & mask
-    return seen_instances(term, home, mask)
+        return (nodes(term, home),)
+    return named_nodes(term, home)
+
+
+@lru_cache(maxsize=4096)
+def named_nodes(name: str, home: Home) -> tuple[int, ...]:
+    """Return the nodes of a class, and of each of its other names."""
+    return tuple(home.by_class.get(each, 0) for each in (name, *home.knowledge.same_class(name)))
 
 
 def seen_instances(name: str, home: Home, mask: int) -> int:
     """Return the seen nodes that a class name stands for (see `Home.instances`, which looks at all)."""
-    names = (name, *home.knowledge.same_class(name))
-    return next((found for each in names if (found := home.by_class.get(each, 0) & mask)), 0)
+    return next((found for each in named_nodes(name, home) if (found := each & mask)), 0)
 
 
 def observation(view: View, goal: Goal | None = None) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from hearth.envs.rewards import USUAL_REWARDS, Reward, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
 from hearth.envs.text_agent import plain
 from hearth.envs.text_protocol_settings import CURRENT, protocol
-from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, observed, seen
+from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, fitted, observed, seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -230,7 +230,7 @@ class TextHomes:
     def _stepped(self, number: int, answer: str) -> float:
         place = self._places[number]
         was_over = place.now.over
-        now, reward = commanded(place.now, answer, self._play, place.shown)
+        now, reward = commanded(place.now, answer, fitted(self._play, place.now.task), place.shown)
         if was_over:
             place.now = now
         else:
@@ -238,11 +238,12 @@ class TextHomes:
         return reward
 
     def _placed(self, now: TextWorld, expert: Any = None) -> _Place:
-        shown = seen(now, self._play)
+        play = fitted(self._play, now.task)
+        shown = seen(now, play)
         if expert is None and self._with_expert:
             expert = MAIN["oracle"](())  # type: ignore[arg-type]
             expert.reset(shown[0], now.progress.goal, 0)
-        return _Place(now, observed(now, self._play, shown), shown, expert)
+        return _Place(now, observed(now, play, shown), shown, expert)
 
     def _info(self, place: _Place) -> Info:
         now = place.now
@@ -264,7 +265,7 @@ class TextHomes:
     def _expert(self, place: _Place) -> str:
         if place.now.over:
             return "wait"
-        step = place.expert.act(*seen(place.now, replace(self._play, partial=False)))
+        step = place.expert.act(*seen(place.now, replace(fitted(self._play, place.now.task), partial=False)))
         return "wait" if step is None else said_step(plain(_towards(step, place.shown[0])))
 
     def snapshot(self) -> tuple[TextWorld, ...]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
-from hearth.envs.compact_text import compact, printable, wanted_nodes
+from hearth.envs.compact_text import compact, printable, said_step, wanted_nodes
 from hearth.envs.rewards import USUAL_REWARDS, Reward
 from hearth.envs.session import MOST_TICKS
 from hearth.envs.text_protocol_settings import Protocol as Words
@@ -24,11 +25,14 @@ from hearth.simulation.observation.visible_nodes import visible
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
 
-_TICK = re.compile(r"^tick \d+, ")
+_BRACKETED = re.compile(r"\[([A-Za-z]+)\]|<([a-z_ ]+)>(?: \(\d+\))?")
 
 
 class Task(Protocol):
-    """A task: an id, a goal, a start; `instruction`, where it has one, is the goal as somebody says it."""
+    """A task: an id, a goal, a start.
+
+    It may have more: `instruction`, the goal as somebody says it, and `rules`, those of actions in its challenge.
+    """
 
     @property
     def id(self) -> str:
@@ -53,7 +57,7 @@ class Play:
         limit: ticks after which a world ends.
         reward: of a tick.
         travel: whether a walk goes on until one arrives.
-        rules: of actions.
+        rules: of actions, for tasks that have none of their own.
         partial: whether the agent sees only the area around it.
     """
 
@@ -108,6 +112,17 @@ class TextWorld:
         return self.won or self.cut_off
 
 
+def fitted(play: Play, task: Task) -> Play:
+    """Return the settings of a task's worlds: a task of a challenge is played by the rules of the challenge."""
+    rules = getattr(task, "rules", play.rules)
+    return play if rules == play.rules else _ruled(play, rules)
+
+
+@lru_cache(maxsize=64)
+def _ruled(play: Play, rules: Rules) -> Play:
+    return replace(play, rules=rules)
+
+
 def begun(task: Task, play: Play, knowledge: Any) -> TextWorld:
     """Return the world of a task at its start.
 
@@ -140,8 +155,13 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
 
 def reason(fault: Diagnostic) -> str:
     """Return the reason for a refusal and its remedy, in characters that can be printed."""
-    remedy = f" ({fault.suggestion})" if fault.suggestion else ""
-    return printable(f"{fault.code}: {_TICK.sub('', fault.message)}{remedy}")
+    remedy = f" ({_in_words(fault.suggestion)})" if fault.suggestion else ""
+    return printable(f"{fault.code}: {_in_words(fault.message)}{remedy}")
+
+
+def _in_words(text: str) -> str:
+    """Return the words of a fault with actions and things as commands write them: `Walk`, not `[Walktowards]`."""
+    return _BRACKETED.sub(lambda found: said_step(found[1] or found[2]), text)
 
 
 def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Legal]) -> tuple[TextWorld, float]:
@@ -160,9 +180,8 @@ def commanded(now: TextWorld, answer: object, play: Play, shown: tuple[View, Leg
         step = read_answer(answer, *shown, play.words)
     except HearthError as error:
         fault = error.diagnostics[0]
-    after, reward = _ticked(
-        replace(now, fault=fault, faults=now.faults + (fault is not None), stopped=False), step, play
-    )
+    heard = now if fault is None and now.fault is None and not now.stopped else _with_fault(now, fault)
+    after, reward = _ticked(heard, step, play)
     if step is not None and step.action == WALK and play.travel:
         after, more = _walked_on(after, step, play, shown[0])
         reward += more
@@ -176,7 +195,14 @@ def _ticked(now: TextWorld, step: Step | None, play: Play) -> tuple[TextWorld, f
     progress = now.progress.then(now.world, world, done)
     last = now.last if step is None else LastAction(step, failures.get(0))
     reward = play.reward((now.progress, now.world), (progress, world), 0)
-    return replace(now, world=world, progress=progress, last=last, ticks=now.ticks + 1), reward
+    # `dataclasses.replace` takes five times as long.
+    after = TextWorld(now.task, world, progress, now.ticks + 1, last, now.fault, now.faults, now.limit, now.stopped)
+    return after, reward
+
+
+def _with_fault(now: TextWorld, fault: Diagnostic | None) -> TextWorld:
+    """Return a world whose last walk did not stop, with the reason why its command is not tried, or None."""
+    return replace(now, fault=fault, faults=now.faults + (fault is not None), stopped=False)
 
 
 def _walked_on(now: TextWorld, step: Step, play: Play, began: View) -> tuple[TextWorld, float]:

@@ -155,9 +155,10 @@ class _Search:
         return together(world, [_bound(step, bound) for step in steps], self.rules)
 
     def _fail(self, number: int, failure: Failure, nodes: dict[Key, int]) -> None:
-        if number >= self.reached:
-            self.reached, self.nodes = number, nodes
-            self.furthest = replace(failure, tick=number)
+        """Keep the last failure of the furthest step; of equal failures the first, whose nodes are the best."""
+        found = replace(failure, tick=number)
+        if number > self.reached or (number == self.reached and found != self.furthest):
+            self.reached, self.nodes, self.furthest = number, nodes, found
 
     def _ordered(self, key: Key, world: World, agent_number: int, nodes: dict[Key, int]) -> list[int]:
         """Ids of the candidates that are not taken: those at hand first, then those in the room, then by id."""

@@ -6,6 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from functools import cached_property
 from operator import is_
 
 from hearth.schemas.call_errors import explained
@@ -48,7 +49,7 @@ class Watch:
         return sum(mask.bit_count() for mask in self.met)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Progress:
     """A goal in a world: how often each of its literals holds. A value; `after` gives the next one.
 
@@ -134,20 +135,20 @@ class Progress:
         same = all(map(is_, watches, self.watches))
         return self if same else Progress(self.goal, tuple(watches))
 
-    @property
+    @cached_property
     def counts(self) -> tuple[int, ...]:
         """Return how often each literal holds, in the goal's order."""
         if self.trace:
             return tuple(self.trace.times(literal, 0, len(self.trace.done)) for literal, _ in self.goal)
         return tuple(watch.count for watch in self.watches)
 
-    @property
+    @cached_property
     def has(self) -> tuple[bool, ...]:
         """Return whether each joined part is reached, in the goal's order."""
         trace = self.trace
         return tuple(trace.has(part, 0, len(trace.done)) for part in self.goal.parts) if trace else ()
 
-    @property
+    @cached_property
     def satisfied(self) -> bool:
         """Return whether every literal holds as often as is wanted, and every part is reached.
 
@@ -155,7 +156,7 @@ class Progress:
         """
         return all(found >= wanted for found, (_, wanted) in self.required()) and all(self.has)
 
-    @property
+    @cached_property
     def fraction(self) -> float:
         """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal."""
         wanted = sum(count for _, (_, count) in self.required()) + len(self.goal.parts)

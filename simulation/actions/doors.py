@@ -11,6 +11,7 @@ from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.states import CLOSED
 
 if TYPE_CHECKING:
+    from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
 
@@ -29,11 +30,8 @@ def blocking(world: World, agent: Agent, room: int) -> Failure | None:
     closed = home.doors & world.states[CLOSED]
     if start < 0 or start == room or not closed:
         return None
-    reached, _ = _flood(world, start, home.doors & ~closed)
-    if reached >> room & 1:
-        return None
-    beyond, _ = _flood(world, start, home.doors)
-    if not beyond >> room & 1:
+    reached = _reached(home, start, closed)
+    if reached >> room & 1 or not _reached(home, start, 0) >> room & 1:
         return None
     door = next(d for d in indices(closed) if home.between[d] & reached and home.between[d] & ~reached)
     return Failure(
@@ -52,15 +50,7 @@ def open_rooms(world: World, agent: Agent) -> int:
     closed = home.doors & world.states[CLOSED]
     if start < 0 or not closed:
         return home.rooms
-    known = home.open_rooms
-    found = known.get((start, closed))
-    if found is None:
-        reached, _ = _flood(world, start, home.doors & ~closed)
-        beyond, _ = _flood(world, start, home.doors)
-        if len(known) >= MOST_KNOWN:
-            known.clear()
-        found = known[start, closed] = home.rooms & (reached | ~beyond)
-    return found
+    return home.rooms & (_reached(home, start, closed) | ~_reached(home, start, 0))
 
 
 def side(world: World, agent: Agent, door: int, room: int) -> int:
@@ -70,7 +60,7 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     start = edge_rows.agent_room(world, agent)
     if start < 0:
         return room
-    reached, _ = _flood(world, start, world.home.doors & ~world.states[CLOSED])
+    reached = _reached(world.home, start, world.home.doors & world.states[CLOSED])
     if room >= 0 and reached >> room & 1:
         return room
     within = world.home.between[door] & world.home.rooms & reached
@@ -79,17 +69,28 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     return lowest(within) if within else room
 
 
-def _flood(world: World, start: int, doors: int) -> tuple[int, int]:
-    """Rooms reached from `start` through these doors, and the doors not yet used."""
+def _reached(home: Home, start: int, closed: int) -> int:
+    """Return the rooms that are reached from one while some doors are closed."""
+    known = home.open_rooms
+    found = known.get((start, closed))
+    if found is None:
+        if len(known) >= MOST_KNOWN:
+            known.clear()
+        found = known[start, closed] = _flood(home, start, home.doors & ~closed)
+    return found
+
+
+def _flood(home: Home, start: int, doors: int) -> int:
+    """Return the rooms reached from `start` through these doors."""
     reached = 1 << start
     rest = doors
     grown = True
     while grown:
         grown = False
         for door in indices(rest):
-            parts = world.home.between[door]
+            parts = home.between[door]
             if parts & reached:
                 reached |= parts
                 rest &= ~(1 << door)
                 grown = True
-    return reached, rest
+    return reached

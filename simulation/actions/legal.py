@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, KeysView, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.short_repr import brief
@@ -119,11 +120,25 @@ def legal(
     situation = Situation(world, agent, rules)
     if only_reachable:
         keep &= reach.reachable(world, situation.me)
-    every: Mapping[str, Action] = ACTIONS if situation.me.pose is None else EVERY
-    if rules.consequences:
-        every = consequent(world.home.knowledge, situation.me.pose is not None)
-    chosen = every if actions is None else {name: action for name, action in every.items() if name in actions}
+    placed = situation.me.pose is not None
+    every: Mapping[str, Action] = consequent(world.home.knowledge, placed) if rules.consequences else _USUAL[placed]
+    if actions is None:
+        chosen = every
+    elif isinstance(actions, frozenset) and not rules.consequences:
+        chosen = _some(placed, actions)
+    else:
+        chosen = {name: action for name, action in every.items() if name in actions}
     return Legal(world.home, agent, _Masks(situation, chosen, keep))
+
+
+_USUAL = (ACTIONS, EVERY)
+"""The actions of characters that are not at places, and of those that are."""
+
+
+@lru_cache(maxsize=128)
+def _some(placed: bool, names: frozenset[str]) -> Mapping[str, Action]:
+    """Return some of these actions; agents ask for the same ones tick by tick."""
+    return {name: action for name, action in _USUAL[placed].items() if name in names}
 
 
 class _Masks(Mapping[str, tuple[int, ...]]):
@@ -141,6 +156,11 @@ class _Masks(Mapping[str, tuple[int, ...]]):
         if masks is None:
             raise KeyError(name)
         return masks
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Return the masks of an action, or the default where it can't be done; without an error in between."""
+        masks = self._found[name] if name in self._found else self._made(name)
+        return default if masks is None else masks
 
     def __contains__(self, name: object) -> bool:
         found = self._found

@@ -25,7 +25,11 @@ class Situation:
         self.sitting = bool(world.states[SITTING] & self.me.bit)
         self.lying = bool(world.states[LYING] & self.me.bit)
         self.resting = self.sitting or self.lying
-        self.close = reach.near_to(world, self.me, rules.near_hands)
+
+    @cached_property
+    def close(self) -> int:
+        """Things that the agent is close to."""
+        return reach.near_to(self.world, self.me, self.rules.near_hands)
 
     @cached_property
     def facing(self) -> int:

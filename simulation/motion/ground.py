@@ -154,13 +154,17 @@ class Ground:
         """Bits (cells, nodes): what stands within reach of a cell, in its room, and not in something."""
         cells = np.zeros((len(self.ways.cells), len(self.home)), bool)
         here = np.asarray(self.rooms)
+        inside: dict[int, np.ndarray] = {}
         for i in indices(self.home.everything):
             node = self.home.node(i)
             if node.box is None or node.category in UNTOUCHED or bottom(node.box) > HEAD:
                 continue
             rooms = self.home.between[i] & self.home.rooms or (1 << self._room_of[i] if self._room_of[i] >= 0 else 0)
             if not self.home.inside[i] & ~self.home.rooms:
-                cells[:, i] = (gaps(self.ways.points, node.box) <= REACH) & np.isin(here, list(indices(rooms)))
+                if rooms not in inside:
+                    inside[rooms] = np.flatnonzero(np.isin(here, list(indices(rooms))))
+                among = inside[rooms]
+                cells[among, i] = gaps(self.ways.points[among], node.box) <= REACH
         return np.packbits(cells, axis=1, bitorder="little")
 
 

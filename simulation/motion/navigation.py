@@ -24,6 +24,9 @@ BODY_RADIUS = 0.25
 MOST_FIELDS = 1_000
 """Distance fields that a floor keeps: 60 KB each for a home of 5,000 cells."""
 
+MOST_PARTS = 64
+"""Graphs without the cells of closed doors that a floor keeps."""
+
 
 def digest_of(floor: Floor) -> str:
     """32 hexadecimal digits, the same for floors that are equal."""
@@ -63,6 +66,7 @@ class Ways:
         self.main = floor.main[floor.walkable]
         self.stored: Callable[[tuple[int, ...]], Field | None] = lambda ends: None
         self._fields: dict[tuple[tuple[int, ...], tuple[int, ...]], Field] = {}
+        self._parts: dict[tuple[int, ...], csr_matrix] = {}
 
     @cached_property
     def digest(self) -> str:
@@ -111,21 +115,24 @@ class Ways:
         if len(self._fields) >= MOST_FIELDS:
             self._fields.pop(next(iter(self._fields)))
         stored = None if without else self.stored(ends)
-        found = self._fields[ends, without] = stored or self._field(ends, without)
+        if without not in self._parts:
+            if len(self._parts) >= MOST_PARTS:
+                self._parts.clear()
+            self._parts[without] = _both_ways(self._without(without) if without else self.graph)
+        found = self._fields[ends, without] = stored or self._field(ends, without, self._parts[without], directed=True)
         return found
 
     def detour(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
         """Return the same, not kept: other characters seldom stand where they did."""
-        return self._field(ends, without)
+        return self._field(ends, without, self._without(without) if without else self.graph, directed=False)
 
-    def _field(self, ends: tuple[int, ...], without: tuple[int, ...]) -> Field:
+    def _field(self, ends: tuple[int, ...], without: tuple[int, ...], graph: csr_matrix, directed: bool) -> Field:
         from scipy.sparse.csgraph import dijkstra
 
         free = [end for end in ends if end not in without]
         if not free:
             return Field(array("d", [math.inf]) * len(self.cells), array("i", [-1]) * len(self.cells))
-        graph = self._without(without) if without else self.graph
-        distance, before, _ = dijkstra(graph, directed=False, indices=free, return_predecessors=True, min_only=True)
+        distance, before, _ = dijkstra(graph, directed=directed, indices=free, return_predecessors=True, min_only=True)
         return Field(array("d", distance.tobytes()), array("i", before.astype(np.int32).tobytes()))
 
     def _without(self, taken: Sequence[int]) -> csr_matrix:
@@ -269,10 +276,27 @@ class Ways:
         if first < 0 or last < 0:
             return None
         taken[first] = False
-        field = self._field((first,), tuple(np.flatnonzero(taken).tolist()))
+        field = self.detour((first,), tuple(np.flatnonzero(taken).tolist()))
         if not math.isfinite(field.distance[last]):
             return None
         numbers = [last]
         while (number := field.following[numbers[-1]]) >= 0:
             numbers.append(number)
         return tuple(self._middles[number] for number in reversed(numbers))
+
+
+def _both_ways(graph: csr_matrix) -> csr_matrix:
+    """Return a graph whose rows have the edges from a cell and then those to it.
+
+    SciPy's search in an undirected graph reads the rows of a graph and then those of its transpose, which it makes at
+    each call. Read in the same order from one row, the same ways are the first of those that are equally short.
+    """
+    from scipy.sparse import csr_matrix
+
+    other = graph.T.tocsr()
+    cells = np.arange(graph.shape[0])
+    rows = np.concatenate([np.repeat(cells, np.diff(each.indptr)) for each in (graph, other)])
+    order = np.argsort(rows, kind="stable")
+    columns = np.concatenate([graph.indices, other.indices])[order]
+    lengths = np.concatenate([graph.data, other.data])[order]
+    return csr_matrix((lengths, columns, graph.indptr + other.indptr), shape=graph.shape)

@@ -205,6 +205,13 @@ def walked_to(world: World, number: int, doors: int) -> int:
     carried = (_held(world) | home.characters) & home.everything
     moved = here.displaced(world) & home.everything & ~carried
     found = reached & ~carried & ~moved | _at_places(world, here, moved, reached)
+    for agent in world.agents:  # a character and all that it carries are at one point
+        if agent.pose is not None:
+            things = (agent.bit | agent.held) & carried
+            carried ^= things
+            (standing,) = ends(world, here, agent.index)
+            if any(ground.joined(cell, standing, doors) for cell in cells):
+                found |= things
     for i in indices(carried):
         there = ends(world, here, i)
         place = -1 if there else _standing(world, here, i)

@@ -16,8 +16,16 @@ def as_seen(world: World, mask: int) -> World:
         world: now.
         mask: the nodes that are seen, by index (see `visible_nodes.visible`).
     """
+    if _LAST and _LAST[0][0] is world and _LAST[0][1] == mask:
+        return _LAST[0][2]
     states = tuple([row & mask for row in world.states])
-    return World(world.home, states, tuple([_seen(agent, mask) for agent in world.agents]), world.moved)
+    seen = World(world.home, states, tuple([_seen(agent, mask) for agent in world.agents]), world.moved)
+    _LAST[:] = [(world, mask, seen)]
+    return seen
+
+
+_LAST: list[tuple[World, int, World]] = []
+"""The last world: the masks of legal actions and the counts of a goal ask for the same one."""
 
 
 def _seen(agent: Agent, mask: int) -> Agent:

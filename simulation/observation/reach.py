@@ -11,6 +11,7 @@ from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.moved_edges import BEARS, CLOSE, NOTHING
+from hearth.simulation.world.states import CLOSED
 
 if TYPE_CHECKING:
     from hearth.simulation.world.world import World
@@ -72,6 +73,15 @@ def faced_by(world: World, agent: Agent) -> int:
 
 def walkable(world: World, agent: Agent, through_doors: bool) -> int:
     """Everything a standing character can walk to: what has a room, and no closed door in the way if doors count."""
+    home = world.home
+    closed = home.doors & world.states[CLOSED] if through_doors else -1
+    places = tuple([(other.bit, other.inside, other.contents) for other in world.agents])
+    key = agent.index, agent.inside, closed, places
+    found = home.walkable.find(world.moved, key)
+    return home.walkable.keep(world.moved, key, _walkable(world, agent, through_doors)) if found is None else found
+
+
+def _walkable(world: World, agent: Agent, through_doors: bool) -> int:
     home = world.home
     direct = home.rooms | contained(world, home.rooms)
     found = direct

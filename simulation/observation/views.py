@@ -141,19 +141,16 @@ def pose(world: World, number: int, last: LastAction | None = None, among: int =
     agent = world.agents[number]
     ids = world.home.ids
     room = edge_rows.agent_room(world, agent)
-
-    def named(mask: int) -> tuple[int, ...]:
-        return tuple(ids[i] for i in indices(mask & among))
-
+    on, facing, worn = agent.on & among, agent.facing & among, agent.worn & among
     return Pose(
         agent=number,
         node=ids[agent.index],
         room=ids[room] if room >= 0 else None,
         posture=_posture(world, agent.bit),
-        on=named(agent.on),
-        facing=named(agent.facing),
-        holding=tuple(ids[i] for i in edge_rows.held_indices(agent)),
-        wearing=named(agent.worn),
+        on=tuple([ids[i] for i in indices(on)]) if on else (),
+        facing=tuple([ids[i] for i in indices(facing)]) if facing else (),
+        holding=tuple([ids[i] for i in edge_rows.held_indices(agent)]) if agent.right or agent.left else (),
+        wearing=tuple([ids[i] for i in indices(worn)]) if worn else (),
         place=agent.pose,
         stride=agent.stride,
         last=last,

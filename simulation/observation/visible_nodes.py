@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 def hidden(world: World) -> int:
     """Everything directly INSIDE something closed that is not a room; it cannot be grabbed or touched."""
-    return contained(world, world.states[CLOSED] & ~world.home.rooms)
+    known, moved = world.home.hidden, world.moved
+    key = world.states[CLOSED], tuple([(agent.bit, agent.inside, agent.contents) for agent in world.agents])
+    found = known.find(moved, key)
+    return known.keep(moved, key, contained(world, key[0] & ~world.home.rooms)) if found is None else found
 
 
 def out_of_sight(world: World) -> int:
@@ -37,7 +40,10 @@ def visible(world: World, agent: Agent) -> int:
     for known, whose, seen in _LAST:
         if known is world and whose is agent:
             return seen
-    seen = _visible(world, agent)
+    home, moved = world.home, world.moved
+    key = agent.index, agent.inside, world.states[CLOSED], tuple([(a[0], a[5:11]) for a in world.agents])
+    found = home.seen.find(moved, key)
+    seen = home.seen.keep(moved, key, _visible(world, agent)) if found is None else found
     _LAST[:] = (world, agent, seen), *_LAST[:3]
     return seen
 

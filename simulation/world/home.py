@@ -16,6 +16,7 @@ from hearth.simulation.world.affordance import allowed, of_kind
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home_building import Raw, Rows
 from hearth.simulation.world.node_states import with_states
+from hearth.simulation.world.values_by_movement import ValuesByMovement
 
 
 class Memo(dict[int, int]):
@@ -241,8 +242,28 @@ class Home:
 
     @cached_property
     def open_rooms(self) -> dict[tuple[int, int], int]:
-        """The rooms that no closed door keeps from a room, by (room, closed doors); `actions.doors` fills it."""
+        """The rooms that are reached from a room, by (room, closed doors); `actions.doors` fills it."""
         return {}
+
+    @cached_property
+    def seen(self) -> ValuesByMovement[int]:
+        """Return the table of the nodes that characters see; `visible_nodes` fills it."""
+        return ValuesByMovement()
+
+    @cached_property
+    def walkable(self) -> ValuesByMovement[int]:
+        """Return the table of the nodes that characters can walk to; `reach` fills it."""
+        return ValuesByMovement()
+
+    @cached_property
+    def hidden(self) -> ValuesByMovement[int]:
+        """Return the table of the nodes in closed things; `visible_nodes` fills it."""
+        return ValuesByMovement()
+
+    @cached_property
+    def free_places(self) -> ValuesByMovement[int]:
+        """Return the table of free seats and beds; `actions.posture` fills it."""
+        return ValuesByMovement()
 
     @cached_property
     def worked_out(self) -> dict[str, Any]:

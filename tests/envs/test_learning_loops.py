@@ -88,10 +88,13 @@ def test_it_is_the_same_in_processes():
     assert ppo("async") == ppo("sync")
 
 
+@pytest.mark.tools
 def test_stable_baselines_learns():
     baselines = pytest.importorskip("stable_baselines3", reason="stable-baselines3 is not installed")
     env = FlattenObservation(gym.make("hearth/Home-v0", **THIN))
     model = baselines.PPO("MlpPolicy", env, n_steps=16, batch_size=16, seed=0)
+    before = [each.clone() for each in model.policy.parameters()]
     model.learn(32)
+    assert any((old != new).any() for old, new in zip(before, model.policy.parameters(), strict=True))
     observation, _ = env.reset(seed=1)
     assert env.action_space.contains(int(model.predict(observation)[0]))

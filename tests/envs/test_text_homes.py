@@ -94,6 +94,37 @@ def test_what_is_refused_says_why_and_takes_a_tick(home, answer, code):
     assert text.replace("\n", "").isprintable() and len(text) <= 1200
 
 
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        ("take milk 142 from oven 5", "NOT_SEEN: you do not see `oven` 5"),
+        ("Grab milk 142 from the oven", "NOT_SEEN: `milk` 142 is not in or on `oven`"),
+        ("take milk 142 from bathroom", "NOT_SEEN: `milk` 142 is not in or on `bathroom`"),
+        ("Walk to the kitchen, then use the sink", "SYNTAX: more than one command"),
+        ("Go to the kitchen and use the sink", "SYNTAX: more than one command"),
+        ("Drink sink", "NOT_HOLDING: the character does not hold the sink (take it first)"),
+        ("Walk fridge, sink", "WRONG_ARITY: Walk takes 1 object, not 2 (write Walk destination)"),
+        ("cook", "UNKNOWN_ACTION: no action is called `cook` (a command as under `Do:`"),
+        ("Grab gizmo", "UNKNOWN_OBJECT: unknown object `gizmo` (a command as under `Do:`"),
+        ("Walk sink 1", "UNBOUND: 1 is `living_room`, not `sink` (you see 158)"),
+    ],
+)  # fmt: skip
+def test_a_refusal_says_why_in_words_and_what_to_do(home, answer, said):
+    played(home, WAY[:3])
+    assert f"Last: refused, you waited. {said}" in home.step(answer)[0]
+
+
+@pytest.mark.parametrize("place", ["fridge 137", "the fridge", "kitchen", "kitchen 109"])
+def test_a_thing_is_taken_from_where_it_is(home, place):
+    played(home, WAY[:3])
+    assert "Last: Grab milk 142 - done." in home.step(f"take milk 142 from {place}")[0]
+
+
+def test_of_several_things_the_one_at_the_place_is_taken(home):
+    played(home, WAY[:4])
+    assert "Last: Grab milk 143 - done." in home.step("take the milk from the fridge")[0]
+
+
 def test_a_world_that_is_over_stays_as_it_is(home):
     played(home, WAY[:-1])
     text, *_, info = home.step(WAY[-1])

@@ -2,13 +2,15 @@
 
 import pytest
 
-from hearth.grounding.binding import Binding, bind, nearest
+from hearth.grounding.binding import Binding, bind, bind_far, nearest
 from hearth.grounding.grounded_run import Trial, attempt
+from hearth.homes.library import load_graph
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.schemas.syntax import parse_program
 from hearth.simulation.engine import run
+from hearth.simulation.world import edge_rows
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
@@ -127,3 +129,13 @@ def test_more_objects_than_an_action_takes_are_a_failure_of_their_step(knowledge
     found = bind(work, world(knowledge))
     assert isinstance(found, Failure) and (found.code, found.tick) == (Code.WRONG_ARITY, 1)
     assert nearest(work, world(knowledge)).nodes.keys() == {("computer", 1), ("keyboard", 1)}
+
+
+def test_where_a_step_fails_all_the_same_the_best_candidates_are_told(knowledge):
+    """The sink of the kitchen that one has walked to, and not the last one that was tried."""
+    home = Home.from_graph(load_graph("maple", knowledge), "maple", knowledge)
+    steps = program("[Walk] <kitchen> (1)", "[Walk] <sink> (1)", "[Wash] <hands_both> (1)")
+    found, failure = bind_far(steps, World.start(home))
+    assert failure is not None and failure.code is Code.UNBOUND
+    room = home.index[found.nodes["kitchen", 1]]
+    assert edge_rows.room_of(World.start(home), home.index[found.nodes["sink", 1]]) == room

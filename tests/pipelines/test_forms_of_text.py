@@ -201,3 +201,17 @@ def test_no_form_is_slow_or_raises_on_hostile_lines(name, unit):
 
 def test_plain_numbered_steps_are_of_no_form():
     assert form_of(["1. Walk to bed", "2. Sleep"]) is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "> go to fridge 1\nYou arrive.\n> open fridge 1\nNothing happens.\n> close fridge 1\nOK.\n",
+        "Act 1: go to fridge 1\nObs 1: OK.\nAct 2: open fridge 1\nObs 2: Nothing happens.\nAct 3: close fridge 1\n",
+    ],
+)
+def test_a_command_without_effect_is_a_step_with_a_warning(knowledge, text):
+    found = parse_steps(text, 0, "a log", knowledge)
+    assert len(found.program.steps) == 3 and not found.faults
+    (warning,) = found.warnings
+    assert warning.line == 3 and "nothing happens" in warning.message

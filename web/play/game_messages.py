@@ -1,13 +1,16 @@
 """The messages to a person's page: at first the whole view, then the differences after each tick."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from functools import reduce
 from operator import or_
 from typing import Any
 
+from hearth.challenges.instruction_writer import instruction
 from hearth.envs.json_observations import last_json
 from hearth.homes.geometry import footprint
 from hearth.kb.action_groups import relation_of
+from hearth.schemas.goals import Goal
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
@@ -87,7 +90,7 @@ class Telling:
         self._named.update(new)
         return {
             "tick": game.tick,
-            "goal": [_wanted(each, view.world.home) for each in game.seen[self.number].counts],
+            "goal": self._goal(view.world.home),
             "things": {str(node): _thing(view.world.home, node) for node in new},
             "changed": changed,
             "gone": gone,
@@ -98,6 +101,15 @@ class Telling:
             "end": None if game.end is None else game.end["code"],
             "ended_by": None if game.end is None else game.end["agent"],
         }
+
+    def _goal(self, home: Home) -> list[dict[str, Any]]:
+        """Return the counted parts of the goal as the person last saw them; what it did itself it knows."""
+        counts = self.game.seen[self.number].counts
+        done = self.game.playing.progress[-1].counts if self.number == 0 else (0,) * len(counts)
+        return [
+            _wanted(replace(each, count=number) if each.seen.seen is None else each, home)
+            for each, number in zip(counts, done, strict=True)
+        ]
 
     def tick(self) -> dict[str, Any]:
         """Return the tick as a message of its own."""
@@ -225,11 +237,13 @@ def _classes(literal: Any, home: Home) -> Iterator[str]:
 
 def goal_words(literal: Any, home: Home) -> str:
     """Return a literal of a goal for people: `Put plate on dining table`."""
+    agent = bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
+    said = (HOLDS, "ON") if agent else ("ON", "INSIDE")
+    if literal.negated or len(literal.terms) != 2 or literal.name not in said:
+        return instruction(Goal.of(literal), home.knowledge, terse=True)
     names = [_name(term, home) for term in literal.terms]
-    if literal.name == HOLDS:
-        return f"Hold {names[1]}"
-    if str(literal.terms[0]).partition(":")[0] == AGENT:
-        return f"Sit on {names[1]}"
+    if agent:
+        return f"{'Hold' if literal.name == HOLDS else 'Sit on'} {names[1]}"
     return f"Put {names[0]} {'in' if literal.name == 'INSIDE' else 'on'} {names[1]}"
 
 

@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
+from hearth.challenges.household_definition import every_home, home_named
 from hearth.challenges.start_worlds import site_of
+from hearth.grounding.environments.default_state import prepared
 from hearth.kb.knowledge import Knowledge
 from hearth.rendering.cameras.camera import Camera
 from hearth.rendering.cameras.sensor import CameraSensor
@@ -19,6 +22,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.observation.visible_nodes import out_of_sight
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.edit import edit
 from hearth.simulation.world.world import World
 from hearth.storage.files import write_bytes
 from hearth.storage.names import inside
@@ -34,10 +38,18 @@ def base_scene(name: str, home: str, knowledge: Knowledge) -> Scene:
         HearthError: BAD_ARGUMENT: the challenge is not played there.
     """
     which = challenge(name)
-    if home not in (*which.train, *which.test):
+    if home not in (every_home() if name == HOUSEHOLD else (*which.train, *which.test)):
         raise HearthError.of(Code.BAD_ARGUMENT, f"{name} is not played in `{home[:40]}`")
-    world = World.start(site_of(name, home, knowledge).home)
+    world = _empty(home, knowledge) if name == HOUSEHOLD else World.start(site_of(name, home, knowledge).home)
     return Scene(tuple(in_sight(prepared_scene(world.graph(), knowledge).scene(), world)))
+
+
+def _empty(name: str, knowledge: Knowledge) -> World:
+    """Return a home of household tasks in its default state, without characters."""
+    home = prepared(home_named(name, knowledge)).home
+    found = edit(World.start(home), remove=[home.ids[i] for i in home.agents], check=False)
+    assert isinstance(found, World)
+    return World.start(found.home)
 
 
 def in_sight(scene: Scene, world: World) -> Iterator[Thing]:

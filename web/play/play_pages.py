@@ -6,7 +6,12 @@ from typing import Any
 from starlette.responses import Response
 
 from hearth.challenges.challenge_definition import NAMES, challenge
+from hearth.challenges.household import household_task
+from hearth.challenges.household_as_challenge import as_task
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
+from hearth.challenges.household_definition import settings
 from hearth.challenges.result_files import MOST_SEEDS
+from hearth.challenges.tasks import Task
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
 from hearth.web.play import game_store
@@ -29,17 +34,28 @@ KINDS_SHOWN = {True: "only what is around me", False: "everything"}
 FIRST_TASKS = 20
 """Tasks of each challenge that the page offers; studies choose others."""
 
+FAMILY_SPLIT = "test_seen"
+"""Split of the household tasks that the page offers by number; any other task has a field for its id."""
+
 
 def start_page(visit: Visit) -> Response:
     """Return the games that may be played, and the person's games."""
     mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
+    people_say = settings()["titles"]
     return visit.page(
         "play/start.html",
+        household=[(number, f"{number + 1}. {people_say[family]}") for number, family in enumerate(_families())],
         challenges=[(name, challenge(name).title, list(_tasks(name)), offered(challenge(name))) for name in NAMES],
         interfaces={name: SHOWN[name] for name in drawable()},
         lacking=missing(),
         games=[_line(each) for each in mine[:30] if not each.blind],
     )
+
+
+def _families() -> Iterator[str]:
+    """Yield the families of the household tasks that are offered; the tasks themselves are made when they are begun."""
+    families = settings()["families"]
+    yield from (families[number % len(families)] for number in range(FIRST_TASKS))
 
 
 def _tasks(name: str) -> Iterator[tuple[int, str]]:
@@ -52,26 +68,36 @@ def _tasks(name: str) -> Iterator[tuple[int, str]]:
 
 
 def _line(each: Stored) -> dict[str, Any]:
-    task = each.trial.task
-    titles = ", ".join(each.trial.challenge.grammar.sets[name].asked for name in task.sets)
     over = each.result is not None
     state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
-    return {"id": each.id, "title": f"{titles}, in {task.home}", "helper": each.trial.helper, "state": state}
+    return {
+        "id": each.id,
+        "title": f"{each.trial.title}, in {each.trial.task.home}",
+        "helper": each.trial.helper,
+        "state": state,
+    }
 
 
 def new(visit: Visit) -> Response:
     """Begin a game as the form says."""
-    name, number = visit.field("challenge", 20), visit.field("task", 6)
-    if name not in NAMES or not number.isdecimal():
-        raise WebError(Code.BAD_ARGUMENT, "task", "a challenge and the number of a task", f"{name} {number}"[:60])
-    split = "test-1" if "test-1" in challenge(name).splits else "test"
     partial = {"": None, "partial": True, "full": False}.get(visit.field("sees", 20))
-    task = published(name, split, int(number))
+    task = _chosen(visit)
     interface = visit.field("interface", 20) or INTERFACES[0]
     chosen = trial(
         task, visit.web.known, visit.field("helper", 40) or "none", interface, _episode(visit, task.id), partial
     )
     return visit.go(f"/play/game/{begin(visit, chosen)}")
+
+
+def _chosen(visit: Visit) -> Task:
+    """Return the task of the form: by its number, or a household task by its id."""
+    name, number = visit.field("challenge", 20), visit.field("task", 6)
+    if name == HOUSEHOLD and (task_id := visit.field("id", 60).strip()):
+        return as_task(household_task(task_id, knowledge=visit.web.known))
+    if name not in (*NAMES, HOUSEHOLD) or not number.isdecimal():
+        raise WebError(Code.BAD_ARGUMENT, "task", "a challenge and the number of a task", f"{name} {number}"[:60])
+    split = FAMILY_SPLIT if name == HOUSEHOLD else "test-1" if "test-1" in challenge(name).splits else "test"
+    return published(name, split, int(number))
 
 
 def _episode(visit: Visit, task: str) -> int:
@@ -94,7 +120,8 @@ def game_page(visit: Visit) -> Response:
         "play/game.html",
         game=live.stored.id,
         interface=game.trial.interface,
-        title=", ".join(game.trial.challenge.grammar.sets[name].asked for name in game.trial.task.sets),
+        title=game.trial.title,
+        instruction=game.trial.instruction if number == 0 else "",
         home=game.trial.task.home,
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,
@@ -131,8 +158,8 @@ def _file(data: bytes, name: str) -> Response:
 def home_file(visit: Visit) -> Response:
     """Return a home in 3D as all games of a challenge have it, as glTF."""
     name, home = visit.part("challenge"), visit.part("home")
-    if name not in NAMES:
-        raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join(NAMES), name[:40])
+    if name not in (*NAMES, HOUSEHOLD):
+        raise WebError(Code.UNKNOWN_ID, "challenge", " or ".join((*NAMES, HOUSEHOLD)), name[:40])
     library("trimesh")
     from hearth.web.play.game_scene_3d import base_file
 

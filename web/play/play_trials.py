@@ -8,6 +8,10 @@ from hearth.agents.agent_registry import HELPERS
 from hearth.agents.online_helper_registry import ONLINE
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import GOALS, NOBODY, Lineup
+from hearth.challenges.household import household_task
+from hearth.challenges.household_as_challenge import OpenTask, as_task
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
+from hearth.challenges.household_definition import settings
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.suite_runs import INFERRED
 from hearth.challenges.task_files import Suite, read_suite, suite_data
@@ -61,6 +65,18 @@ class Trial:
     def challenge(self) -> Challenge:
         """Return the challenge of the task."""
         return challenge(self.task.challenge)
+
+    @property
+    def title(self) -> str:
+        """Return what its task is about, for people."""
+        if isinstance(self.task, OpenTask):
+            return str(settings()["titles"][self.task.family])
+        return ", ".join(self.challenge.grammar.sets[name].asked for name in self.task.sets)
+
+    @property
+    def instruction(self) -> str:
+        """Return what the person is asked to do in words; empty where the goal's title says it."""
+        return self.task.instruction if isinstance(self.task, OpenTask) else ""
 
     @property
     def helped(self) -> bool:
@@ -120,11 +136,13 @@ def _can_help(helper: str, which: Challenge) -> bool:
 
 
 def published(name: str, split: str, number: int) -> Task:
-    """Return a published task by its place in its split, from 0.
+    """Return a published task by its place in its split, from 0; one of `household` is made, which takes a moment.
 
     Raises:
         HearthError: BAD_ARGUMENT: there is no such challenge, split or number.
     """
+    if name == HOUSEHOLD:
+        return as_task(household_task(f"{HOUSEHOLD}-{split}-{number:05d}"))
     found = tasks(name, split, limit=max(number + 1, 1))
     if not 0 <= number < len(found):
         message = f"there is no task {number} of {name} {split}"

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from hearth.envs.json_observations import SeenLiteral, seen_goal
+from hearth.envs.json_observations import SeenLiteral, seen_goal, seen_instances
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT
 from hearth.simulation.env import Tick
@@ -43,10 +43,10 @@ class Remembered:
         for pose in (view.me, *view.others):
             if pose.place is not None:
                 self.trails.setdefault(pose.agent, []).append((view.tick, pose.place))
-        before = {each.seen.literal: each.count for each in self.counts}
-        found = list(seen_goal(self.goal, view)) if self.goal is not None else []
+        before = {each.seen.literal: each for each in self.counts}
+        found = list(seen_goal(Goal(self.goal.counts), view)) if self.goal is not None else []
         self.counts = tuple(
-            Counted(each, (each.seen or 0) if _sees_place(each, view) else before.get(each.literal, 0))
+            Counted(each, each.seen or 0) if _sees_place(each, view) else before.get(each.literal, Counted(each, 0))
             for each in found
         )
 
@@ -56,4 +56,6 @@ def _sees_place(each: SeenLiteral, view: View) -> bool:
     terms = each.literal.terms
     place = terms[-1] if terms else None
     about_somebody = any(isinstance(term, str) and term.partition(":")[0] == AGENT for term in terms)
-    return about_somebody or not isinstance(place, int) or view.sees(place)
+    if about_somebody or place is None:
+        return True
+    return view.sees(place) if isinstance(place, int) else bool(seen_instances(place, view.world.home, view.mask))

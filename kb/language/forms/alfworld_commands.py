@@ -1,9 +1,11 @@
 """ALFWorld's commands: `go to fridge 1`, `take apple 1 from countertop 1`, `> open fridge 1`."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
+from itertools import pairwise
 
 from hearth.kb.language.forms.form import Form, Placed, step, title
+from hearth.kb.language.refusals import Refusal
 from hearth.kb.language.steps_from_calls import written
 
 _THING = r"([a-z]+(?: [a-z]+){0,2} \d{1,3})"
@@ -49,6 +51,13 @@ _NAMES = {
 }
 """ALFWorld's names of classes that have another name here."""
 
+NOTHING = re.compile(r"\s*(?:(?:obs|observation)\s*\d*\s*:)?\s*nothing happens\.?\s*", re.IGNORECASE)
+"""The game's answer to a command that changed nothing."""
+
+_NO_EFFECT = Refusal(
+    "the game answered that nothing happens; the step is kept", "leave it out if it is not meant", is_warning=True
+)
+
 _RULED = re.compile(r"\s*={2,}\s*([^=]+?)\s*={2,}\s*")
 _OTHERS = re.compile(r"\s*(?:\d+[.)]|[-*•]|\[?step \d+\]?:?)\s+", re.IGNORECASE)
 
@@ -84,11 +93,26 @@ def _fits(lines: Sequence[str]) -> bool:
 def _lines(lines: Sequence[str]) -> list[Placed]:
     """Return the commands; once a line begins with `>`, the others are what the game answered."""
     is_log = any(line.lstrip().startswith(">") for line in lines)
-    return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "")
+    without_effect = rows_without_effect(lines) if is_log else frozenset()
+    return read(lines, lambda raw: raw if raw.lstrip().startswith(">") or not is_log else "", without_effect)
 
 
-def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
-    """Return the steps of the lines of which `words_of` gives words; title and description stand above the first."""
+def doubted(placed: Placed) -> Placed:
+    """Return a step with the warning that the game answered that nothing happens."""
+    return placed._replace(line=placed.line._replace(why=_NO_EFFECT))
+
+
+def rows_without_effect(lines: Sequence[str]) -> frozenset[int]:
+    """Return the rows of commands that the game answers with "Nothing happens"."""
+    said = [row for row, line in enumerate(lines) if line.strip()]
+    return frozenset(row for row, after in pairwise(said) if NOTHING.fullmatch(lines[after]))
+
+
+def read(lines: Sequence[str], words_of: Callable[[str], str], without_effect: Collection[int] = ()) -> list[Placed]:
+    """Return the steps of the lines of which `words_of` gives words; title and description stand above the first.
+
+    Commands without an effect are steps, with a warning.
+    """
     from hearth.kb.language.plan_lines import plan_line
 
     found: list[Placed] = []
@@ -97,7 +121,7 @@ def read(lines: Sequence[str], words_of: Callable[[str], str]) -> list[Placed]:
         words = _words(words_of(raw))
         if words and (meant := command(words)):
             begun = True
-            found.append(step(row, meant))
+            found.append(doubted(step(row, meant)) if row in without_effect else step(row, meant))
         elif ruled := _RULED.fullmatch(raw[:200]):
             found.append(title(row, ruled[1]))
         elif words and begun and not _NO_STEP.fullmatch(words):

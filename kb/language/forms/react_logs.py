@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from hearth.kb.language.forms.alfworld_commands import command
+from hearth.kb.language.forms.alfworld_commands import command, doubted, rows_without_effect
 from hearth.kb.language.forms.form import Form, Placed, step
 from hearth.kb.language.operator_step_syntax import operator_step
 from hearth.kb.language.plan_lines import plan_line
@@ -27,12 +27,13 @@ def _fits(lines: Sequence[str]) -> bool:
 def _lines(lines: Sequence[str]) -> list[Placed]:
     """Return the acts; what stands before the first act or thought is title and description."""
     found: list[Placed] = []
-    begun = False
+    begun, without_effect = False, rows_without_effect(lines)
     for row, raw in enumerate(lines):
         act = _ACT.match(raw)
         begun = begun or act is not None or _OTHER.match(raw) is not None
         if act and act[1].strip() and not _NO_ACT.fullmatch(act[1].strip()):
-            found.append(step(row, command(act[1][:300]) or operator_step(raw.strip()) or act[1]))
+            meant = step(row, command(act[1][:300]) or operator_step(raw.strip()) or act[1])
+            found.append(doubted(meant) if row in without_effect else meant)
         elif not begun:
             found.append(Placed(row, plan_line(raw)._replace(number=None, numbered=False)))
     return found

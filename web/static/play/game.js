@@ -159,6 +159,10 @@ function showGoal() {
   if (!state.goal.length) return;
   document.getElementById("goal").replaceChildren(...state.goal.map((each) => {
     const line = document.createElement("li");
+    if (!each.wanted) { // all of a kind, of which none was seen
+      line.append(`${each.text}: none seen yet`);
+      return line;
+    }
     line.className = each.count >= each.wanted ? "met" : "";
     const bar = document.createElement("progress");
     Object.assign(bar, { max: each.wanted, value: each.count });
