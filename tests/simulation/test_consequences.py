@@ -320,6 +320,24 @@ def test_who_eats_has_no_bread_left_and_nothing_that_is_gone_comes_back():
         )
 
 
+def test_bread_has_four_portions_and_what_lies_on_a_plate_one():
+    """A loaf is cut, eaten from and put back: only its last portion leaves nothing."""
+    nodes = [
+        node(1, "kitchen"), node(2, "character", properties=("PERSON",)), node(4, "plate", properties=("SURFACES",)),
+        *(node(k, "food_bread", properties=("GRABBABLE", "EATABLE", "CUTTABLE")) for k in (3, 5)),
+    ]  # fmt: skip
+    edges = [*(Edge(n.id, "INSIDE", 1) for n in nodes[1:]), Edge(5, "ON", 4), Edge(2, "HOLDS_RH", 3)]
+    edges += [edge for k in (3, 4) for edge in (Edge(2, "CLOSE", k), Edge(k, "CLOSE", 2))]
+    world = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "", KNOWN))
+    ids = {"bread": 3, "plate": 4, "served": 5}
+    for state in ("BEGUN", "HALF_LEFT", "LAST_LEFT"):
+        world = ran(world, ids, "Eat bread").final
+        assert {name for thing, name in states(world) if thing == 3} == {state} and world.holding() == {0: (3,)}
+    last = ran(world, ids, "Eat bread").final
+    assert last.has_state(3, "GONE") and last.holding() == {0: ()}
+    assert ran(world, ids, "Eat plate").final.has_state(5, "GONE")
+
+
 @pytest.mark.parametrize("seed", range(40))
 def test_nothing_appears_or_vanishes_but_what_is_eaten_or_drunk(seed):
     rng = random.Random(seed)
