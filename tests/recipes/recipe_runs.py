@@ -1,4 +1,4 @@
-"""Recipes as people write them (`*.yaml` beside this file), run by action set 3 in each home and held to their goals."""
+"""Recipes as people write them (the YAML files here), run by action set 3 in each home and held to their goals."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Recipe(NamedTuple):
     Attributes:
         title: its name.
         ingredients: as on a shopping list; the names of classes.
-        steps: sentences, one step each; a sentence with a number before `times` stands so often.
+        steps: sentences, one step each.
         goal: what is so at the end.
     """
 
