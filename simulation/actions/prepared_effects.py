@@ -19,7 +19,7 @@ from hearth.simulation.actions.literal_effects import Change, excluded, made
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.bits import indices
-from hearth.simulation.world.moved_edges import CONTENTS
+from hearth.simulation.world.moved_edges import BEARS, CONTENTS
 from hearth.simulation.world.world import World
 
 Guard = Callable[[World, Agent, int, int], bool]
@@ -208,6 +208,10 @@ def _guard(effect: Effect) -> Guard:
         return _is_on
     if "holds(a, h)" in texts and "INSIDE(x, h)" in texts:
         return _carries
+    if "holds(a, h)" in texts and "ON(x, h)" in texts:
+        return _bears
+    if "ON(x, o)" in texts and "x" in effect.variables:
+        return _is_laden
     if "INSIDE(x, o)" in texts and "x" in effect.variables:
         return _is_full
     if effect.literal.name == "state" and effect.literal.negated:
@@ -239,6 +243,20 @@ def _carries(world: World, agent: Agent, o: int, s: int) -> bool:
 
 def _is_on_or_carries(world: World, agent: Agent, o: int, s: int) -> bool:
     return agent.on != 0 or _carries(world, agent, o, s)
+
+
+def _bears(world: World, agent: Agent, o: int, s: int) -> bool:
+    """Return whether something may be on a thing that the character holds."""
+    return any(_is_laden(world, agent, i, s) for i in indices(agent.right | agent.left))
+
+
+def _is_laden(world: World, agent: Agent, o: int, s: int) -> bool:
+    if world.home.bears[o] or 8 * o + BEARS in world.moved.extra:
+        return True
+    for each in world.agents:  # noqa: SIM110 - as below
+        if each.on >> o & 1:
+            return True
+    return False
 
 
 def _is_full(world: World, agent: Agent, o: int, s: int) -> bool:

@@ -227,6 +227,11 @@ def first_tick(execution, thing: int, state: str) -> int:
             ("SwitchOn stove", "Wait 30"),
             {("sauce_pan", "HOT"): 4, ("apple", "HOT"): 5, ("apple", "COOKED"): 8, ("apple", "BURNT"): 24},
         ),
+        (
+            {"sauce_pan": "ON stove", "apple": "ON sauce_pan"},
+            ("SwitchOn stove", "Wait 30"),
+            {("apple", "HOT"): 5, ("apple", "COOKED"): 8, ("apple", "BURNT"): 24},
+        ),
         ({"plate": "INSIDE dishwasher"}, ("SwitchOn dishwasher", "Wait 12"), {("plate", "CLEAN"): 9}),
         ({"shirt": "INSIDE washing_machine"}, ("SwitchOn washing_machine", "Wait 12"), {("shirt", "WET"): 9}),
         ({"apple": "INSIDE microwave"}, ("Open microwave", "Wait 12"), {("apple", "HOT"): -1}),
