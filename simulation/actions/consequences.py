@@ -71,13 +71,24 @@ def _followed(action: Action, later: Consequence, knowledge: Knowledge) -> Actio
     if not later.effects:
         return action
 
-    effects, done = prepared(later.effects, knowledge).after, action.rule
+    more, done = prepared(later.effects, knowledge), action.rule
+    effects = more.after
+    if not more.marks and len(more.guards) == 1:
+        guard = more.guards[0]
 
-    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
-        result = done(world, number, o, s, rules)
-        if type(result) is not World:
-            return result
-        return effects(world, result, world.agents[number], o, s, rules)
+        def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+            result = done(world, number, o, s, rules)
+            if type(result) is not World or not guard(world, world.agents[number], o, s):
+                return result
+            return effects(world, result, world.agents[number], o, s, rules)
+
+    else:
+
+        def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+            result = done(world, number, o, s, rules)
+            if type(result) is not World:
+                return result
+            return effects(world, result, world.agents[number], o, s, rules)
 
     return Action(action.name, rule, action.mask)
 
