@@ -1,4 +1,4 @@
-"""Programs that bring one hazard each (`planted.yaml`), run by action set 3 in a home, and the hazards that are found."""
+"""Programs that bring one hazard each (`planted.yaml`), run by action set 3, and the hazards that are found."""
 
 from __future__ import annotations
 
