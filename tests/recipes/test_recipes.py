@@ -11,7 +11,7 @@ FEWEST_HOMES = 6
 
 
 def test_there_are_many_and_no_two_are_alike():
-    assert len(EVERY) == sum(1 for _ in recipes()) >= 80
+    assert len(EVERY) == sum(1 for _ in recipes()) >= 200
     assert len({recipe.steps for recipe in EVERY.values()}) == len(EVERY)
     assert len({recipe.goal for recipe in EVERY.values()}) == len(EVERY)
 
@@ -35,7 +35,7 @@ def test_a_recipe_ends_in_its_goal_in_at_least_six_homes(title):
     assert sum(not words for words in found.values()) >= FEWEST_HOMES, found
 
 
-@pytest.mark.parametrize("title", list(EVERY)[::9])
+@pytest.mark.parametrize("title", EVERY)
 def test_the_goal_of_a_recipe_does_not_hold_before_it(title):
     """A goal that holds without the steps would say nothing of them."""
     recipe = EVERY[title]
