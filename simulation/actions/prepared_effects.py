@@ -206,14 +206,10 @@ def _guard(effect: Effect) -> Guard:
     texts = [str(part) for part in _parts(effect.condition)]
     if str(effect.literal) == "not ON(a, x)" and "x" in effect.variables:
         return _is_on
-    if "holds(a, h)" in texts and "INSIDE(x, h)" in texts:
+    if "holds(a, h)" in texts and ("INSIDE(x, h)" in texts or "ON(x, h)" in texts):
         return _carries
-    if "holds(a, h)" in texts and "ON(x, h)" in texts:
-        return _bears
-    if "ON(x, o)" in texts and "x" in effect.variables:
-        return _is_laden
-    if "INSIDE(x, o)" in texts and "x" in effect.variables:
-        return _is_full
+    if "x" in effect.variables and ("INSIDE(x, o)" in texts or "ON(x, o)" in texts):
+        return _is_full_or_laden
     if effect.literal.name == "state" and effect.literal.negated:
         return _somewhere(EVERY_STATE_ID[effect.literal.terms[1].name])
     if not effect.variables and is_of_kind(effect.condition) and free(effect.condition) == {"o"}:
@@ -230,33 +226,30 @@ def _is_on(world: World, agent: Agent, o: int, s: int) -> bool:
 
 
 def _carries(world: World, agent: Agent, o: int, s: int) -> bool:
-    """Return whether something may be in a thing that the character holds."""
+    """Return whether something may be in or on a thing that the character holds."""
     held = rest = agent.right | agent.left
-    contents, extra = world.home.contents, world.moved.extra
+    if not held:
+        return False
+    contents, bears, moved = world.home.contents, world.home.bears, world.moved
+    extra = moved.extra
     while rest:  # `indices` takes three times as long for the one or two
         i = rest.bit_length() - 1
-        if contents[i] or 8 * i + CONTENTS in extra:
+        if extra.get(8 * i + CONTENTS) or extra.get(8 * i + BEARS):
+            return True
+        if contents[i] & ~moved.inside or bears[i] & ~moved.on:
             return True
         rest ^= 1 << i
-    return held != 0 and _anybody_inside(world, held)
+    return _anybody_there(world, held)
 
 
 def _is_on_or_carries(world: World, agent: Agent, o: int, s: int) -> bool:
     return agent.on != 0 or _carries(world, agent, o, s)
 
 
-def _bears(world: World, agent: Agent, o: int, s: int) -> bool:
-    """Return whether something may be on a thing that the character holds."""
-    return any(_is_laden(world, agent, i, s) for i in indices(agent.right | agent.left))
-
-
-def _is_laden(world: World, agent: Agent, o: int, s: int) -> bool:
-    if world.home.bears[o] or 8 * o + BEARS in world.moved.extra:
-        return True
-    for each in world.agents:  # noqa: SIM110 - as below
-        if each.on >> o & 1:
-            return True
-    return False
+def _is_full_or_laden(world: World, agent: Agent, o: int, s: int) -> bool:
+    moved = world.moved
+    on = world.home.bears[o]
+    return 8 * o + BEARS in moved.extra or on & ~moved.on != 0 or _is_full(world, agent, o, s)
 
 
 def _is_full(world: World, agent: Agent, o: int, s: int) -> bool:
@@ -264,12 +257,13 @@ def _is_full(world: World, agent: Agent, o: int, s: int) -> bool:
     inside = world.home.contents[o]
     if 8 * o + CONTENTS in moved.extra or (inside and inside & ~moved.inside and not moved.inside >> o & 1):
         return True
-    return _anybody_inside(world, 1 << o)
+    return _anybody_there(world, 1 << o)
 
 
-def _anybody_inside(world: World, things: int) -> bool:
+def _anybody_there(world: World, things: int) -> bool:
+    """Return whether a character is in or on some things, or they are characters with contents."""
     for each in world.agents:  # noqa: SIM110 - `any` takes three times as long
-        if each.inside & things or (each.bit & things and each.contents):
+        if (each.inside | each.on) & things or (each.bit & things and each.contents):
             return True
     return False
 
