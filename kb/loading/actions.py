@@ -137,13 +137,16 @@ def _excuses(
     """Yield what lets checks pass in set 3: a state of the first object, which a mask reads from one row."""
     for found in _conditions(rows, at, faults):
         literal = found.formula
-        is_state = isinstance(literal, Literal) and literal.name == "state" and not literal.negated
         if _only_later(at) or found.code not in {check.code for check in own}:
             faults.at(at, f"`unless` of {name}: sets 1 and 2 make no check {found.code}", "name one of its checks")
-        elif not is_state or literal.terms[0].name != "o":
-            faults.at(at, f"`unless` of {name} is `{literal}`", "write `FAILURE_CODE: state(o, STATE)`")
-        else:
+        elif isinstance(literal, Literal) and _is_state_of_first(literal):
             yield found
+        else:
+            faults.at(at, f"`unless` of {name} is `{literal}`", "write `FAILURE_CODE: state(o, STATE)`")
+
+
+def _is_state_of_first(literal: Literal[Term]) -> bool:
+    return literal.name == "state" and not literal.negated and literal.terms[0].name == "o"
 
 
 MOST_TICKS = 100
