@@ -103,7 +103,11 @@ def _excused(action: Action, later: Consequence, knowledge: Knowledge) -> Action
 
     def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
         result = action.rule(world, number, o, s, rules)
-        if type(result) is World or result.code not in codes or not any(world.states[k] >> o & 1 for k in rows):
+        if (
+            not isinstance(result, Failure)
+            or result.code not in codes
+            or not any(world.states[k] >> o & 1 for k in rows)
+        ):
             return result
         return by_literals.rule(world, number, o, s, rules)
 
