@@ -1,4 +1,4 @@
-"""Actions that a goal forbids, as in `not [Open](fridge)`: an agent that keeps to it leaves them out."""
+"""Actions that a goal forbids, as in `not [Open](fridge)` and `never [Open](fridge)`; an obedient agent omits them."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from hearth.simulation.world.home import Home
 def forbidden(goal: Goal, home: Home) -> dict[str, int]:
     """Return the actions that a goal forbids: action -> the nodes that must not be its first object.
 
-    Only parts of the form `not [Action](thing)` are read.
+    Only parts of the form `not [Action](thing)` and `never [Action](thing)` are read.
     """
     found: dict[str, int] = {}
     for part in goal.parts:
-        if part.join != "not" or part.goals[0].parts:
+        if part.join not in ("not", "never") or part.goals[0].parts:
             continue
         match part.goals[0].counts:
             case ((literal, 1),) if literal.name in home.knowledge.actions and len(literal.terms) == 1:

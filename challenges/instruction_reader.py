@@ -94,10 +94,11 @@ def _clauses() -> tuple[_Wording, ...]:
 def _other() -> Mapping[str, re.Pattern[str]]:
     data = wordings()["other"]
     flat = {name: text for name, text in data.items() if isinstance(text, str)}
-    return {name: re.compile(_pattern(text), re.DOTALL) for name, text in {**flat, **data["joined"]}.items()}
+    joined = {f"joined {word}": text for word, text in data["joined"].items()}
+    return {name: re.compile(_pattern(text), re.DOTALL) for name, text in {**flat, **joined}.items()}
 
 
-_SLOTS = {"variable": r"\w+"}
+_SLOTS = {"variable": r"\w+", "ticks": "[0-9]{1,5}"}
 """The patterns of slots that hold less than any text."""
 
 
@@ -131,11 +132,12 @@ class _Reader(NamedTuple):
         if match := other["never"].fullmatch(text):
             return Goal(parts=(Joined("not", (Goal.of(self._act(match["act"])),)),))
         for join in wordings()["other"]["joined"]:
-            match = other[join].fullmatch(text)
+            match = other[f"joined {join}"].fullmatch(text)
             if match and (parts := _bracketed(match["parts"])) is not None:
-                variable = match.groupdict().get("variable")
+                slots = match.groupdict()
+                variable, ticks = slots.get("variable"), int(slots.get("ticks") or 0)
                 goals = tuple(self.goal(part, depth + 1) for part in parts)
-                return Goal(parts=(Joined(join, goals, f"?{variable}" if variable else ""),))
+                return Goal(parts=(Joined(join, goals, f"?{variable}" if variable else "", ticks),))
         return Goal(self._clause(text))
 
     def _clause(self, text: str) -> tuple[tuple[Literal[Name], int], ...]:

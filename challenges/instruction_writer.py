@@ -183,7 +183,7 @@ def _joined(part: Joined, knowledge: Knowledge, style: Style, chooser: Random) -
     if part.join == "not" and (act := _never(part.goals[0], knowledge)) is not None:
         return str(other["never"].format(act=act))
     parts = ", ".join(f"({clauses(goal, knowledge, style, chooser)})" for goal in part.goals)
-    return str(other["joined"][part.join].format(parts=parts, variable=part.variable[1:]))
+    return str(other["joined"][part.join].format(parts=parts, variable=part.variable[1:], ticks=part.ticks))
 
 
 def _never(goal: Goal, knowledge: Knowledge) -> str | None:

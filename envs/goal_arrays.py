@@ -25,13 +25,14 @@ GOAL_COLUMNS = (
 """Columns of `goal`: kind 1 is a state, 2 a relation, 3 a word that joins goals, 4 an action; predicate the id of the
 state, relation (that of HOLDS after those of all relations) or action, or the number of the word in `JOINS` from 1;
 classes as in `classes`; subject and target slot + 1 where the literal names a node, the number of slots + the number of
-its row where it is the variable of an `exists` or `forall`, else 0; how often it is wanted, and how often the agent
+its row where it is the variable of an `exists` or `forall`, else 0; how often it is wanted (of `within` the ticks), and
+how often the agent
 sees it hold, 0 in goals of joined parts or actions, which look back; the number of the row, from 1, whose word joins
 it, 0 for the goal itself; and which of the joined goals it is in, from 1."""
 
 STATE, RELATION, JOIN, ACTION = 1, 2, 3, 4
 
-JOINS = ("or", "then", "not", "exists", "forall")
+JOINS = ("or", "then", "not", "exists", "forall", "always", "never", "within")
 
 UNKNOWN_CLASS = 1
 """Number of classes that the knowledge does not have."""
@@ -54,7 +55,7 @@ def _rows(goal: Goal) -> list[_Row]:
     def add(one: Goal, part: int, branch: int, variables: dict[str, int]) -> None:
         found.extend(_Row(literal, count, part, branch, variables) for literal, count in one)
         for each in one.parts:
-            found.append(_Row(each, 1, part, branch, variables))
+            found.append(_Row(each, each.ticks if each.join == "within" else 1, part, branch, variables))
             number = len(found)
             known = {**variables, each.variable: number} if each.variable else variables
             for place, goals in enumerate(each.goals, 1):

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from hearth.kb.knowledge_records import Action
+from hearth.kb.formula import Or
+from hearth.kb.knowledge_records import Action, Condition, Consequence
 from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.version import ACTION_SET, NEXT_ACTION_SET
 
@@ -45,5 +46,14 @@ def in_set(action: Action, number: int, actions: Mapping[str, Action]) -> Action
     if later is None:
         return action if action.executed else replace(action, executed=True)  # a move by metres
     base = actions[later.like] if later.like else action
-    checks, effects = base.preconditions + later.preconditions, base.effects + later.effects
+    checks, effects = excused(base.preconditions, later) + later.preconditions, base.effects + later.effects
     return replace(action, executed=True, preconditions=checks, effects=effects)
+
+
+def excused(checks: tuple[Condition, ...], later: Consequence) -> tuple[Condition, ...]:
+    """Return the checks of sets 1 and 2 as set 3 makes them: some hold in one more case."""
+    more = {each.code: each.formula for each in later.unless}
+    return tuple(
+        check._replace(formula=Or((check.formula, more[check.code]))) if check.code in more else check
+        for check in checks
+    )

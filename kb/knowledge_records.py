@@ -81,6 +81,7 @@ class Consequence:
         like: the action whose rule it shares, or ''.
         ticks: how long it takes.
         notice: what others see or hear of it, in words.
+        unless: what lets checks of sets 1 and 2 pass: the check of the same code holds, too, where the formula does.
     """
 
     preconditions: tuple[Condition, ...] = ()
@@ -88,6 +89,7 @@ class Consequence:
     like: str = ""
     ticks: int = 1
     notice: str = ""
+    unless: tuple[Condition, ...] = ()
 
     __repr__ = brief
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.short_repr import brief
@@ -14,21 +14,35 @@ class Joined:
     """Goals joined by a word.
 
     Attributes:
-        join: `or` (one of them), `then` (all, in this order), `not`, `exists` or `forall` (of one, about things).
+        join: `or` (one of them), `then` (all, in this order), `not`, `exists` or `forall` (of one, about things),
+            `always` or `never` (of one, at every time up to the end), `within` (of one, by a tick).
         goals: what is joined.
         variable: of `exists` and `forall`; in the goal it is a term that begins with `?`.
+        ticks: of `within`: the last of the ticks in which the goal may be reached, counted from the part before.
     """
 
     join: str
     goals: tuple[Goal, ...]
     variable: str = ""
+    ticks: int = 0
 
     __repr__ = brief
 
     def __str__(self) -> str:
         if self.variable:
             return f"{self.join} {self.variable[1:]}. ({self.goals[0]})".replace("?", "")
-        return f"not ({self.goals[0]})" if self.join == "not" else f" {self.join} ".join(f"({g})" for g in self.goals)
+        if self.join == "within":
+            return f"({self.goals[0]}) within {self.ticks}"
+        if self.join in ("not", *LASTING):
+            return f"{self.join} ({self.goals[0]})"
+        return f" {self.join} ".join(f"({goal})" for goal in self.goals)
+
+    def _bound(self, variable: str, node: int) -> Joined:
+        return replace(self, goals=tuple(goal.bound(variable, node) for goal in self.goals))
+
+
+LASTING = ("always", "never")
+"""The words of goals about every time up to the end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,10 +77,15 @@ class Goal:
             for goal in part.goals:
                 yield from goal.literals()
 
+    @property
+    def lasts(self) -> bool:
+        """Return whether some of its parts are about every time up to the end."""
+        return any(part.join in LASTING or any(goal.lasts for goal in part.goals) for part in self.parts)
+
     def bound(self, variable: str, node: int) -> Goal:
         """Return the goal with a node instead of a variable."""
         counts = ((lit._replace(terms=tuple(node if t == variable else t for t in lit.terms)), n) for lit, n in self)
-        parts = (Joined(p.join, tuple(g.bound(variable, node) for g in p.goals), p.variable) for p in self.parts)
+        parts = (p._bound(variable, node) for p in self.parts)
         return Goal(tuple(counts), tuple(parts))
 
     def __str__(self) -> str:

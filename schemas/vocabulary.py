@@ -16,10 +16,13 @@ OPPOSITE = {name: STATES[number ^ 1] for number, name in enumerate(STATES)}
 FURTHER_STATES: tuple[str, ...] = (
     "COLD", "HOT", "RAW", "COOKED", "BURNT", "EMPTY", "FULL", "DRY", "WET", "UNFOLDED", "FOLDED", "UNWRAPPED",
     "WRAPPED", "UNCOVERED", "COVERED", "REPAIRED", "BROKEN", "COMBED", "SHAVED", "CUT", "FLUSHED", "WRITTEN", "SMEARED",
-    "IN_CALL", "GONE",
+    "IN_CALL", "GONE", "FINISHED",
+    "BEGUN", "HALF_LEFT", "LAST_LEFT",
 )  # fmt: skip
 """The states that acts set besides in action set 3; what excludes what stands in kb/data/states.yaml. GONE is what was
-eaten, drunk or used up: it is nowhere, and its id is never used again."""
+eaten, drunk or used up: it is nowhere, and its id is never used again. FINISHED is a device that switched itself off,
+until somebody turns its knob. The last three are of food and drink in several portions, of which one, two and three are
+taken."""
 
 EVERY_STATE = STATES + FURTHER_STATES
 """The states of worlds of action set 3, in the order of their rows."""

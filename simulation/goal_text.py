@@ -6,6 +6,8 @@
             not NAME(term, ...)          of nothing: `not ON(plate, table)` is a table without plates
             ACTION[(term, ...)]          an action that is done: `WATCH`, `PUTIN(milk, fridge)`; `[Open](fridge)`
             not one | (goal)
+            always one | never one       at every time up to the end; in `A then always B` from A on
+            one within n                 at some time of the first n ticks; in `A then B within n` from A on
             exists x. (goal)             for some thing x; `forall x. (goal)` for all
     term    a class, a node (`41`, `television.410`), `agent`, `agent:1`, or a variable
 
@@ -20,7 +22,7 @@ from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.goals import LASTING, Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.numbers import number_of
 from hearth.schemas.tokens import Tokens
@@ -35,6 +37,9 @@ OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
 
 VARIABLES = 2
 """Variables within one another: each multiplies the cost by the number of things."""
+
+MOST_TICKS = 10_000
+"""Largest number of ticks of `within`."""
 
 MOST = 1_000
 """States, relations and actions of a goal: each is looked at in every tick."""
@@ -98,7 +103,12 @@ class _Parser(Tokens):
         self.counted = 0
 
     def ordered(self) -> Goal:
-        return self._joined("then", self.several(self.alternatives, "then"))
+        place = self.next
+        goals = self.several(self.alternatives, "then")
+        if any(goal.lasts for goal in goals[:-1]):
+            message, remedy = f"{' and '.join(LASTING)} are about the time up to the end", "write that part last"
+            raise self.fault(message, suggestion=remedy, ahead=place - self.next)
+        return self._joined("then", goals)
 
     def alternatives(self) -> Goal:
         return self._joined("or", self.several(self.conjunction, "or", "|"))
@@ -116,17 +126,32 @@ class _Parser(Tokens):
         return self.deeper(self._one)
 
     def _one(self) -> Goal:
+        goal = self._unbounded()
+        while self.peek().lower() == "within":
+            self.take()
+            number = number_of(self.peek())
+            if number is None or number > MOST_TICKS:
+                found = self.peek()[:20] or "the end"
+                raise self.fault(f"expected a number of ticks, at most {MOST_TICKS:,}, but found `{found}`")
+            self.take()
+            goal = Goal(parts=(Joined("within", (goal,), ticks=number),))
+        return goal
+
+    def _unbounded(self) -> Goal:
         word = self.peek().lower()
         if word == "not":
             self.take()
             return self._negated()
+        if word in LASTING:
+            self.take()
+            return Goal(parts=(Joined(word, (self.one(),)),))
         if word in ("exists", "forall"):
             return self._quantified(self.take().lower())
         return self._bracketed() if word == "(" else self._counted()
 
     def _negated(self) -> Goal:
         """`not NAME(term, ...)` of a state or relation is a literal, counted like others; else a goal is negated."""
-        is_literal = self.peek().lower() not in ("(", "not", "exists", "forall")
+        is_literal = self.peek().lower() not in ("(", "not", "exists", "forall", *LASTING)
         goal = self.one()
         match goal.counts:
             case ((literal, 1),) if is_literal and not self.variables and not acts(literal, self.home):

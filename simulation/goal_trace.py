@@ -3,6 +3,7 @@
 A state or relation is reached while it holds; an action is reached once it has been done. The parts of `A then B` are
 reached one after the other. After a state, a state is reached only when it begins to hold; after an action it may have
 held before, as in `WATCH(x) then ON(television)` of the Embodied Agent Interface. The last part is reached at the end.
+`always` and `never` ask for every time since the part before, `within` for some time in its ticks.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from itertools import islice
 from typing import NamedTuple
 
-from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.goals import LASTING, Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.program import Step
 from hearth.simulation.engine import Execution
@@ -64,6 +65,11 @@ class Trace(NamedTuple):
         if part.join == "or":
             return any(self.reached(goal, since, now) for goal in part.goals)
         (goal,) = part.goals
+        if part.join == "within":
+            return any(self.reached(goal, since, at) for at in range(since, min(now, since + part.ticks) + 1))
+        if part.join in LASTING:
+            wanted = part.join == "always"
+            return all(self.reached(goal, since, at) is wanted for at in range(since, now + 1))
         if part.join == "not":
             return not self.reached(goal, since, now)
         found = (self.reached(goal.bound(part.variable, node), since, now) for node in self._things(part))
@@ -88,7 +94,9 @@ class Trace(NamedTuple):
             if first is None:
                 return False
             since, begins = first, not any(acts(literal, home) for literal, _ in goal.literals())
-        came = not begins or any(self._comes(goals[-1], since, at, begins) for at in range(since + 1, now + 1))
+        last = Goal(goals[-1].counts, tuple(part for part in goals[-1].parts if part.join not in LASTING))
+        begins = begins and bool(last.counts or last.parts or not goals[-1].parts)
+        came = not begins or any(self._comes(last, since, at, begins) for at in range(since + 1, now + 1))
         return came and self.reached(goals[-1], since, now)
 
     def _comes(self, goal: Goal, since: int, at: int, begins: bool) -> bool:
@@ -98,12 +106,15 @@ class Trace(NamedTuple):
         """
         if begins and not goal.counts and [part.join for part in goal.parts] == ["or"]:
             return any(self._comes(other, since, at, begins) for other in goal.parts[0].goals)
+        if begins and not goal.counts and [part.join for part in goal.parts] == ["within"]:
+            (part,) = goal.parts
+            return at <= since + part.ticks and self._comes(part.goals[0], since, at, begins)
         before = begins and (at == since or self.reached(goal, since, at - 1))
         return self.reached(goal, since, at) and not before
 
 
 def _positive(goal: Goal) -> bool:
-    return all(part.join not in ("not", "forall") and all(map(_positive, part.goals)) for part in goal.parts)
+    return all(part.join not in ("not", "never", "forall") and all(map(_positive, part.goals)) for part in goal.parts)
 
 
 def acts(literal: Literal[Name], home: Home) -> bool:

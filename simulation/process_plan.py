@@ -137,6 +137,7 @@ class Plan(NamedTuple):
         asked: these states.
         bits: the rows of counts.
         by_row: the processes by their first row of counts.
+        triggers: the states without which no process goes on, each with the kinds of which one has to be in it.
     """
 
     processes: tuple[Running, ...]
@@ -145,6 +146,7 @@ class Plan(NamedTuple):
     asked: tuple[int, ...]
     bits: int
     by_row: dict[int, Running]
+    triggers: dict[int, frozenset[int]]
 
 
 @lru_cache(maxsize=8)
@@ -158,7 +160,11 @@ def planned(knowledge: Knowledge) -> Plan:
         first += found[-1].bits
     every = tuple(each._replace(kept=tuple(_keeping(each, found))) for each in found)
     read = _read(every)
-    return Plan(every, tuple(numbers), read, tuple(read), first, {each.first: each for each in every})
+    by_row = {each.first: each for each in every}
+    triggers: dict[int, frozenset[int]] = {}
+    for each in every:
+        triggers[each.state] = triggers.get(each.state, frozenset()) | {each.trigger}
+    return Plan(every, tuple(numbers), read, tuple(read), first, by_row, triggers)
 
 
 def _running(process: Process, first: int, numbers: dict[tuple[Formula, bool], int]) -> Running:
@@ -212,12 +218,13 @@ class Here:
     was kept here would only end with the collector.
     """
 
-    __slots__ = ("_kinds", "_read", "plan")
+    __slots__ = ("_kinds", "_read", "_triggers", "plan")
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self._kinds: dict[int, int] = {}
         self._read: dict[int, int] = {}
+        self._triggers: dict[int, int] = {}
 
     def kind(self, home: Home, number: int) -> int:
         """Return the nodes of a kind."""
@@ -232,10 +239,20 @@ class Here:
         """Return the nodes of which processes ask whether they are in a state, by its row."""
         found = self._read.get(state)
         if found is None:
-            found = 0
-            for number in self.plan.read[state]:
-                found |= self.kind(home, number)
-            self._read[state] = found
+            found = self._read[state] = self._any(home, self.plan.read[state])
+        return found
+
+    def triggers(self, home: Home, state: int) -> int:
+        """Return the nodes of which one has to be in a state, or some processes do not go on."""
+        found = self._triggers.get(state)
+        if found is None:
+            found = self._triggers[state] = self._any(home, self.plan.triggers[state])
+        return found
+
+    def _any(self, home: Home, kinds: Iterable[int]) -> int:
+        found = 0
+        for number in kinds:
+            found |= self.kind(home, number)
         return found
 
 

@@ -16,7 +16,7 @@ from hearth.simulation.process_plan import Moment, Running, here
 from hearth.simulation.world.action_set_3_states import WIDTH
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import CONTENTS, NOTHING
-from hearth.simulation.world.process_ticks import GoingOn, Ticks, ticks_left
+from hearth.simulation.world.process_ticks import SETTLED, STILL, GoingOn, Ticks, ticks_left
 from hearth.simulation.world.world import World
 
 
@@ -29,9 +29,10 @@ def widened(world: World) -> World:
         return _widened(world)
     known = home.kinds.get(_START)
     if known is None:
-        known = home.kinds[_START] = (None, _widened(world).states)
-    wide = World(home, known[1], world.agents, world.moved)
-    wide.settled = True
+        wide = _widened(world)
+        known = home.kinds[_START] = (wide.states, wide.settled)
+    wide = World(home, known[0], world.agents, world.moved)
+    wide.settled = known[1]
     return wide
 
 
@@ -60,20 +61,23 @@ def advanced(before: World, world: World) -> World:
         world: after the tick's acts.
     """
     states = world.states
+    try:
+        known = before.settled
+    except AttributeError:
+        known = 0
+    if known == STILL and (states is before.states or not _may_start(world)):
+        world.settled = STILL
+        return world
     if len(states) == _NARROW:
         world = widened(world)
         states = world.states
     ticks: Ticks = states[WIDTH]  # type: ignore[assignment] # see `action_set_3_states`
-    try:
-        known = before.settled
-    except AttributeError:
-        known = False
     if not known or not (
         (before.states is states and before.moved is world.moved) or _is_as_before(before, world, ticks)
     ):
         ticks = _of_now(world, ticks.counted())
     elif not ticks.due:
-        world.settled = True
+        world.settled = SETTLED if ticks.watched else STILL
         return world
     return _ended_or_older(world, ticks)
 
@@ -94,8 +98,18 @@ def _ended_or_older(world: World, ticks: Ticks) -> World:
 def _with_ticks(world: World, ticks: Ticks) -> World:
     rows: tuple[Any, ...] = (*world.states[:WIDTH], ticks)
     later = World(world.home, rows, world.agents, world.moved)
-    later.settled = True
+    later.settled = SETTLED if ticks.due or ticks.watched else STILL
     return later
+
+
+def _may_start(world: World) -> bool:
+    """Return whether something is in a state without which no process goes on."""
+    place, states = here(world.home), world.states
+    for number in place.plan.triggers:
+        row = states[number]
+        if row and row & place.triggers(world.home, number):
+            return True
+    return False
 
 
 def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:

@@ -37,7 +37,8 @@ _OPENINGS = (
 _OPENING = re.compile(rf"(?:{'|'.join(_OPENINGS)})(?:\b|(?<=[,:]))[\s,]*", re.IGNORECASE)
 _CLOSING = re.compile(
     r"(?:[\s,]+(?:please|thanks|thank you|too|as well|already|right away|at once|would you|will you"
-    r"|love|dear|mate|darling|honey|if you (?:can|please|would|like)|if possible|for me))+$",
+    r"|love|dear|mate|darling|(?<!the )(?<!some )(?<!with )(?<!of )honey"
+    r"|if you (?:can|please|would|like)|if possible|for me))+$",
     re.IGNORECASE,
 )
 _FILLED = re.compile(r",\s+(?:you know|i mean|um+|uh+|like),\s+", re.IGNORECASE)

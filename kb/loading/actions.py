@@ -17,10 +17,10 @@ from hearth.schemas.literals import Literal
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "calls", "groups",
-                          "source", "set", "then", "like", "ticks", "notice"})  # fmt: skip
+                          "source", "set", "then", "like", "ticks", "notice", "unless"})  # fmt: skip
 _ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
                   "calls": NAMES, "groups": NAMES, "say": TEXT, "source": TEXT, "then": LIST, "like": TEXT,
-                  "notice": TEXT}  # fmt: skip
+                  "notice": TEXT, "unless": LIST}  # fmt: skip
 _INHERITED = ("groups", "calls")
 _REQUIREMENT_SHAPES = dict.fromkeys(("any", "all", "classes", "contains"), NAMES) | {"also": REASONS, "never": REASONS}
 _REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "source": TEXT}
@@ -124,9 +124,29 @@ def _later(
     if like and (like not in entries or not _only_later(at) or _only_later(entries[like])):
         faults.at(at, f"{name} is like `{like:.40}`", "an action that sets 1 and 2 execute")
     more = _all_effects(name, fields.get("then") or (), at, entries, faults)
+    unless = tuple(_excuses(name, fields.get("unless") or (), own[0], at, faults))
     if not _only_later(at):
-        return Consequence((), more, "", ticks, str(fields.get("notice") or "")) if more or "ticks" in fields else None
+        notice = str(fields.get("notice") or "")
+        return Consequence((), more, "", ticks, notice, unless) if more or unless or "ticks" in fields else None
     return Consequence(own[0], own[1] + more, like, ticks, str(fields.get("notice") or ""))
+
+
+def _excuses(
+    name: str, rows: Iterable[Any], own: tuple[Condition, ...], at: Entry, faults: Faults
+) -> Iterator[Condition]:
+    """Yield what lets checks pass in set 3: a state of the first object, which a mask reads from one row."""
+    for found in _conditions(rows, at, faults):
+        literal = found.formula
+        if _only_later(at) or found.code not in {check.code for check in own}:
+            faults.at(at, f"`unless` of {name}: sets 1 and 2 make no check {found.code}", "name one of its checks")
+        elif isinstance(literal, Literal) and _is_state_of_first(literal):
+            yield found
+        else:
+            faults.at(at, f"`unless` of {name} is `{literal}`", "write `FAILURE_CODE: state(o, STATE)`")
+
+
+def _is_state_of_first(literal: Literal[Term]) -> bool:
+    return literal.name == "state" and not literal.negated and literal.terms[0].name == "o"
 
 
 MOST_TICKS = 100

@@ -53,7 +53,8 @@ def check_literals(action: Action, derived: Derived, at: Entry, faults: Faults) 
     parts: list[tuple[Formula, set[str]]] = [(condition.formula, bound) for condition in action.preconditions]
     effects = list(action.effects)
     if action.later is not None:
-        parts += [(condition.formula, bound) for condition in action.later.preconditions]
+        checks = (*action.later.preconditions, *action.later.unless)
+        parts += [(condition.formula, bound) for condition in checks]
         effects += action.later.effects
     for part, variables in parts:
         check_formula(part, variables, action.name, derived, at, faults)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from hearth.kb.derived_uses import derived_used
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
 
@@ -20,7 +21,7 @@ def _lines(knowledge: Knowledge) -> Iterator[str]:
     yield ""
     yield "Where the words above have a meaning of their own:"
     yield ""
-    for head, body in knowledge.derived.values():
+    for head, body in derived_used(knowledge).values():
         yield f"- `{head}` is `{body}`"
     yield ""
     yield "Valid to write, and not executed:"

@@ -14,6 +14,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from hearth.kb.action_sets import states_of_set
+from hearth.kb.derived_uses import derived_used
 from hearth.kb.formula import GONE, OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action, Requirement
@@ -53,7 +54,7 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
     words = {("state", state) for state in states_of_set(knowledge.action_set)} | {
         ("property", name) for name in properties
     }
-    formulas = [body for _, body in knowledge.derived.values()]
+    formulas = [body for _, body in derived_used(knowledge).values()]
     for action in knowledge.actions.values():
         if action.executed:
             formulas += [check.formula for check in action.preconditions]
@@ -74,7 +75,7 @@ def option_predicate(name: str) -> str:
 
 def options(knowledge: Knowledge) -> list[str]:
     """Return the names of the rules that derived predicates and effects ask for, sorted."""
-    formulas = [body for _, body in knowledge.derived.values()]
+    formulas = [body for _, body in derived_used(knowledge).values()]
     formulas += [effect.condition for action in knowledge.actions.values() for effect in action.effects]
     return sorted({name for formula in formulas for name in _asked(formula)})
 
@@ -283,7 +284,7 @@ class Writer(ABC):
 def domain(knowledge: Knowledge, name: str = "hearth") -> str:
     """Return the domain as text: predicates, axioms, and one action for each that is executed."""
     writer, axioms = _AxiomWriter(knowledge), {}
-    for head, body in knowledge.derived.values():
+    for head, body in derived_used(knowledge).values():
         names = {term.name: f"?{term.name}" for term in head.terms}
         axioms[writer.derived(head, names)] = writer.formula(body, names)
     lines = [

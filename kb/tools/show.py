@@ -79,6 +79,7 @@ def _set_3(later: Consequence | None) -> list[dict[str, str]]:
         return []
     rows = [("like", later.like, "")] if later.like else []
     rows += [("before", str(check.formula), check.code.value) for check in later.preconditions]
+    rows += [("unless", str(check.formula), check.code.value) for check in later.unless]
     rows += [("effect", str(effect), "") for effect in later.effects]
     rows += [("ticks", str(later.ticks), ""), ("notice", later.notice, "")]
     return [{"part": part, "is": text, "else": code} for part, text, code in rows]

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
+from hearth.kb.action_sets import excused
 from hearth.kb.formula import And, Formula, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action as Known
@@ -65,18 +66,61 @@ _OF_PLACED, _OF_OTHERS = -3, -4
 
 def _followed(action: Action, later: Consequence, knowledge: Knowledge) -> Action:
     """Return an action of set 2 with the additions of set 3."""
+    if later.unless:
+        return _excused(_followed(action, replace(later, unless=()), knowledge), later, knowledge)
     if not later.effects:
         return action
 
-    effects, done = prepared(later.effects, knowledge).after, action.rule
+    more, done = prepared(later.effects, knowledge), action.rule
+    effects = more.after
+    if not more.marks and len(more.guards) == 1:
+        guard = more.guards[0]
 
-    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
-        result = done(world, number, o, s, rules)
-        if type(result) is not World:
-            return result
-        return effects(world, result, world.agents[number], o, s, rules)
+        def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+            result = done(world, number, o, s, rules)
+            if type(result) is not World or not guard(world, world.agents[number], o, s):
+                return result
+            return effects(world, result, world.agents[number], o, s, rules)
+
+    else:
+
+        def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+            result = done(world, number, o, s, rules)
+            if type(result) is not World:
+                return result
+            return effects(world, result, world.agents[number], o, s, rules)
 
     return Action(action.name, rule, action.mask)
+
+
+def _excused(action: Action, later: Consequence, knowledge: Knowledge) -> Action:
+    """Return an action of which some checks hold in one more case; it is read from its literals then."""
+    known = knowledge.actions[action.name]
+    effects = (*known.effects, *later.effects)
+    by_literals = _by_literals(known, Consequence(excused(known.preconditions, later), effects), knowledge)
+    codes = {each.code for each in later.unless}
+    rows = [EVERY_STATE_ID[each.formula.terms[1].name] for each in later.unless if isinstance(each.formula, Literal)]
+
+    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+        result = action.rule(world, number, o, s, rules)
+        if (
+            not isinstance(result, Failure)
+            or result.code not in codes
+            or not any(world.states[k] >> o & 1 for k in rows)
+        ):
+            return result
+        return by_literals.rule(world, number, o, s, rules)
+
+    def masks(situation: Situation) -> Masks:
+        found, world = action.mask(situation), situation.world
+        if not any(world.states[k] for k in rows if k < len(world.states)):
+            return found
+        more = by_literals.mask(situation)
+        if found is None or more is None:
+            return found or more
+        return tuple(one | other for one, other in zip(found, more, strict=True))
+
+    return Action(action.name, rule, masks)
 
 
 def _by_literals(known: Known, later: Consequence, knowledge: Knowledge) -> Action:

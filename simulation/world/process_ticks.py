@@ -6,6 +6,9 @@ the second bit, and so on. While nothing changes, no row is touched: the number 
 
 from typing import NamedTuple
 
+SETTLED, STILL = 1, 2
+"""Values of `World.settled`."""
+
 
 class GoingOn(NamedTuple):
     """A process that goes on in a world: its rows of counts, and the things that take part."""

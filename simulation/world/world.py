@@ -35,9 +35,10 @@ class World(WorldState):
 
     __slots__ = ("_key", "settled")
     _key: tuple[object, ...]
-    settled: bool
-    """True if its `Ticks` name all that goes on in it; not set in a world that was made in another way than by a tick
-    (see `processes`)."""
+    settled: int
+    """`SETTLED` if its `Ticks` name all that goes on in it. `STILL` if nothing goes on and no device is at work: then
+    nothing can begin before a state changes. Not set in a world that was made in another way than by a tick (see
+    `processes`)."""
 
     @classmethod
     @explained

@@ -18,11 +18,12 @@ def random_goal(chooser: Random, knowledge, depth: int = 0, variables: tuple[str
     counts = tuple(_literal(chooser, knowledge, variables) for _ in range(chooser.choice((1, 1, 2, 3))))
     if depth == DEEPEST or chooser.random() < 0.6:
         return Goal(counts)
-    join = chooser.choice(("or", "then", "not", "exists", "forall"))
+    join = chooser.choice(("or", "then", "not", "exists", "forall", "always", "never", "within"))
     variable = f"?{'xyz'[depth]}" if join in ("exists", "forall") else ""
     inner = (*variables, variable) if variable else variables
     goals = (random_goal(chooser, knowledge, depth + 1, inner) for _ in range(2 if join in ("or", "then") else 1))
-    return Goal(counts if chooser.random() < 0.5 else (), (Joined(join, tuple(goals), variable),))
+    ticks = chooser.randint(0, 99) if join == "within" else 0
+    return Goal(counts if chooser.random() < 0.5 else (), (Joined(join, tuple(goals), variable, ticks),))
 
 
 def _literal(chooser: Random, knowledge, variables: tuple[str, ...]):

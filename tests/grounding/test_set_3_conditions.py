@@ -75,23 +75,23 @@ def test_acts_that_undo_each_other_are_trimmed_by_set_3():
 
 
 def test_further_states_of_a_start_are_stored_and_read_again(maple):
-    milk = one(maple, "milk")
-    home = changed(maple, Change(set_states=((milk, "COLD"), (milk, "DIRTY")), cleared_states=((milk, "CLEAN"),)))
+    bowl = one(maple, "bowl")
+    home = changed(maple, Change(set_states=((bowl, "COLD"), (bowl, "DIRTY")), cleared_states=((bowl, "CLEAN"),)))
     world = widened(World.start(home))
-    assert world.has_state(milk, "COLD") and world.has_state(milk, "DIRTY") and not world.has_state(milk, "CLEAN")
-    assert "COLD" in home.node(home.index[milk]).states and "COLD" not in maple.node(maple.index[milk]).states
-    warm = changed(home, Change(cleared_states=((milk, "COLD"),)))
-    assert not widened(World.start(warm)).has_state(milk, "COLD") and widened(World.start(home)).has_state(milk, "COLD")
+    assert world.has_state(bowl, "COLD") and world.has_state(bowl, "DIRTY") and not world.has_state(bowl, "CLEAN")
+    assert "COLD" in home.node(home.index[bowl]).states and "COLD" not in maple.node(maple.index[bowl]).states
+    warm = changed(home, Change(cleared_states=((bowl, "COLD"),)))
+    assert not widened(World.start(warm)).has_state(bowl, "COLD") and widened(World.start(home)).has_state(bowl, "COLD")
 
 
 def test_graphs_of_set_3_differ_by_states_and_not_by_nodes(maple):
     world = widened(World.start(maple))
-    after = run(world, Program(steps=(bound(maple, "Walk", "milk"),)), CONSEQUENCES).final
-    milk = maple.index[one(maple, "milk")]
+    after = run(world, Program(steps=(bound(maple, "Walk", "bowl"),)), CONSEQUENCES).final
+    bowl = maple.index[one(maple, "bowl")]
     states = [*after.states]
-    states[10] |= 1 << milk
+    states[10] |= 1 << bowl
     cold = World(maple, tuple(states), after.agents, after.moved)
-    assert encode(after.graph(), cold.graph()) == cold.changes(after) == Change(set_states=((maple.ids[milk], "COLD"),))
+    assert encode(after.graph(), cold.graph()) == cold.changes(after) == Change(set_states=((maple.ids[bowl], "COLD"),))
 
 
 def test_two_states_that_exclude_each_other_are_unsound(maple):

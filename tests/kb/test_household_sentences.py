@@ -128,6 +128,8 @@ TALKS = {
     "Put the cup on the table / Put the plate there": "[PutBack] <plate> (1) <table> (1)",
     "Open the fridge / Grab the milk / Put it back in": "[PutIn] <milk> (1) <fridge> (1)",
     "Grab the soap / Put that in the sink as well": "[PutIn] <soap> (1) <sink> (1)",
+    "Walk to the kitchen / Find the honey": "[Find] <honey> (1)",
+    "Walk to the kitchen / Grab the milk, honey": "[Grab] <milk> (1)",
     "Grab the soap / Grab the shoes / Put them on": "[PutOn] <shoes> (1)",
     "Grab a cup / Grab another cup": "[Grab] <cup> (2)",
     "Grab two cups / Put the first cup on the table / Put the other cup on the table":

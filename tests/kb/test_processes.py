@@ -58,6 +58,8 @@ def test_a_row_of_a_user_is_one_more(tmp_path, knowledge):
         ("set: 3\n  like: Fold\n  effects: []", "an action that sets 1 and 2 execute"),
         ('set: 3\n  effects: ["gone(a, o)"]', "is not an effect"),
         ('set: 3\n  effects: ["state(o, PURPLE)"]', "nothing can be brought into that state"),
+        ('effects: []\n  unless: [{IS_OFF: "state(o, ON)"}]', "sets 1 and 2 make no check IS_OFF"),
+        ('before: [{IS_OFF: "state(o, ON)"}]\n  unless: [{IS_OFF: "property(o, CLOTHES)"}]', "state(o, STATE)"),
     ],
 )
 def test_an_action_of_set_3_that_cannot_be_read_is_a_fault(tmp_path, entry, words):

@@ -23,6 +23,12 @@ def own(action: Action) -> Action:
     return replace(action, preconditions=action.later.preconditions, effects=action.later.effects)
 
 
+def excused(knowledge: Knowledge, facts: Facts, action: Action, binding: Mapping[str, int], code: Code) -> bool:
+    """Whether set 3 lets a check of set 2 pass. There is one such check of an action, and it is the last."""
+    assert action.later is not None
+    return any(each.code is code and holds(knowledge, facts, each.formula, binding) for each in action.later.unless)
+
+
 def refused(knowledge: Knowledge, facts: Facts, action: Action, binding: Mapping[str, int], options) -> Code | None:
     """The code of the first check that does not hold."""
     failed = first_failure(knowledge, facts, own(action), binding, options)

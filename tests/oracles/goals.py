@@ -57,6 +57,13 @@ class PlainRun:
     def part(self, part: Joined, since: int, now: int) -> bool:
         if part.join == "or":
             return any(self.reached(goal, since, now) for goal in part.goals)
+        if part.join == "always":
+            return not [time for time in range(since, now + 1) if not self.reached(part.goals[0], since, time)]
+        if part.join == "never":
+            return not [time for time in range(since, now + 1) if self.reached(part.goals[0], since, time)]
+        if part.join == "within":
+            times = [time for time in range(since, now + 1) if self.reached(part.goals[0], since, time)]
+            return bool(times) and times[0] - since <= part.ticks
         if part.join == "not":
             return not self.reached(part.goals[0], since, now)
         if part.join == "then":
@@ -68,7 +75,13 @@ class PlainRun:
         goal, *rest = goals
         times = [time for time in range(since, now + 1) if self.comes(goal, since, time, begins)]
         if not rest:
-            return bool(times) and self.reached(goal, since, now)
+            whole = self.reached(goal, since, now)
+            lasting = [part for part in goal.parts if part.join in ("always", "never")]
+            if not begins or not lasting:
+                return bool(times) and whole
+            other = Goal(goal.counts, tuple(part for part in goal.parts if part not in lasting))
+            begun = other == Goal() or any(self.comes(other, since, time, True) for time in range(since, now + 1))
+            return begun and whole
         acts = any(literal.name in self.knowledge.actions for literal, _ in goal.literals())
         return bool(times) and self.chain(rest, times[0], now, not acts)
 
@@ -77,4 +90,6 @@ class PlainRun:
             return self.reached(goal, since, time)
         if not goal.counts and len(goal.parts) == 1 and goal.parts[0].join == "or":
             return any(self.comes(one, since, time, True) for one in goal.parts[0].goals)
+        if not goal.counts and len(goal.parts) == 1 and goal.parts[0].join == "within":
+            return time - since <= goal.parts[0].ticks and self.comes(goal.parts[0].goals[0], since, time, True)
         return time > since and self.reached(goal, since, time) and not self.reached(goal, since, time - 1)

@@ -74,6 +74,28 @@ def ran(home, text):
         ("OPEN(fridge)", False),
         ("[Open](fridge)", False),
         ("CLOSED(fridge) and not [Close](fridge)", True),
+        ("never GRAB", True),
+        ("never OPEN(fridge) and WATCH", True),
+        ("never ON(television)", False),
+        ("always CLOSED(fridge)", True),
+        ("always ON(television)", False),
+        ("always not OPEN(fridge) and SITTING(agent)", True),
+        ("SWITCHON then always ON(television)", True),
+        ("ON(television) then always ON(television)", True),
+        ("ON(television) then never SITTING(agent)", False),
+        ("ON(television) then never OPEN(fridge) and SITTING(agent)", True),
+        ("SITTING(agent) then never OPEN(fridge) and ON(television)", False),
+        ("ON(television) within 2", True),
+        ("ON(television) within 1", False),
+        ("ON(television) then SITTING(agent) within 2", True),
+        ("ON(television) then SITTING(agent) within 1", False),
+        ("ON(television) then ON(television) within 9", False),
+        ("SWITCHON then ON(television) within 0", True),
+        ("(SWITCHON then SIT) within 4 and WATCH within 5", True),
+        ("not (SITTING(agent) within 3)", True),
+        ("exists x. (SWITCHON(x) within 2)", True),
+        ("forall x. (never GRAB(x))", True),
+        ("exists x. (never SIT(x) and WATCH(x))", True),
     ],
 )
 def test_watching_television(maple, goal, reached):
@@ -81,7 +103,7 @@ def test_watching_television(maple, goal, reached):
     assert progress.satisfied == reached
     assert progress.unmet() == Goal() if reached else progress.fraction < 1
     assert Progress.start(read_goal(goal, maple), World.start(maple)).satisfied == goal.startswith(
-        ("CLOSED", "forall x. (not")
+        ("CLOSED", "forall x. (n", "never GRAB", "never ON", "always CLOSED", "not (")
     )
 
 
@@ -134,6 +156,13 @@ def test_a_record_of_the_embodied_agent_interface(maple):
         ("WATCH(tv, tv)", "WRONG_ARITY", (1, 1), "has 2 objects and takes 1"),
         ("exists x. (WATCH(x)) then READ(x)", "UNKNOWN_OBJECT", (1, 32), "`x` is not a known class"),
         ("exists x. (exists y. (exists z. (READ(z))))", "SYNTAX", (1, 30), "more than 2 variables"),
+        ("never OPEN(fridge) then GRAB(milk)", "SYNTAX", (1, 1), "always and never are about the time up to the end"),
+        ("WATCH and (not (always OPEN(fridge))) then GRAB", "SYNTAX", (1, 1), "about the time up to the end"),
+        ("WATCH within", "SYNTAX", (1, 13), "expected a number of ticks"),
+        ("WATCH within x", "SYNTAX", (1, 14), "expected a number of ticks"),
+        ("WATCH within 9999999", "SYNTAX", (1, 14), "at most 10,000"),
+        ("WATCH\n and never SHINY(cup)", "SYNTAX", (2, 12), "SHINY is not a known state"),
+        ("never " * 10_000, "SYNTAX", (1, 241), "more than 40 parts within one another"),
         ("(" * 10_000, "SYNTAX", (1, 41), "more than 40 parts within one another"),
         ("not " * 10_000, "SYNTAX", (1, 161), "more than 40 parts within one another"),
     ],
@@ -166,7 +195,9 @@ def random_run(seed: int, length: int) -> tuple[World, list[Step]]:
 
 def random_goal(rng: random.Random, start: World, final: World, steps: list[Step], depth: int, variables: int) -> Goal:
     """A goal about what the run did and changed, so that it is often reached."""
-    kind = rng.choice(("literal",) * 3 + ("and", "or", "then", "then", "not", "exists")) if depth else "literal"
+    spans = ("always", "never", "within")
+    kinds = ("literal",) * 3 + ("and", "or", "then", "then", "not", "exists", *spans)
+    kind = rng.choice(kinds) if depth else "literal"
     if kind == "literal":
         return random_literal(rng, start, final, steps, variables)
     several = kind in ("and", "or", "then")
@@ -178,7 +209,9 @@ def random_goal(rng: random.Random, start: World, final: World, steps: list[Step
         return Goal(sum((goal.counts for goal in goals), ()), sum((goal.parts for goal in goals), ()))
     if kind == "exists":
         return Goal(parts=(Joined(kind, tuple(goals), f"?x{variables}"),)) if more > variables else goals[0]
-    return Goal(parts=(Joined(kind, tuple(goals)),))
+    if kind == "then" and any(goal.lasts for goal in goals[:-1]):
+        return goals[-1]  # such a goal is a fault of its text
+    return Goal(parts=(Joined(kind, tuple(goals), ticks=rng.randint(0, 5) if kind == "within" else 0),))
 
 
 def random_literal(rng: random.Random, start: World, final: World, steps: list[Step], variables: int) -> Goal:

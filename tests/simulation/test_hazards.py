@@ -26,6 +26,7 @@ from hearth.simulation.world.world import World
 
 PLANTED = {
     "appliance_in_bath": ("toaster PLUGGED_IN HAS_PLUG", "sink", "INSIDE"),
+    "blade_dropped": ("chef_knife", "", ""),
     "burner_alone": ("stove ON", "", ""),
     "candle_alone": ("candle ON", "", ""),
     "candle_asleep": ("candle ON", "", ""),
@@ -38,6 +39,7 @@ PLANTED = {
     "iron_alone": ("iron ON", "", ""),
     "knife_on_floor": ("floor", "chef_knife", "BEARS"),
     "metal_in_microwave": ("microwave ON", "fork", "CONTAINS"),
+    "liquid_on_device": ("computer PLUGGED_IN HAS_PLUG", "cup FULL RECIPIENT", "BEARS"),
     "medicine_and_child": ("medicine", "table", "ON"),
     "water_running": ("faucet ON", "", ""),
     "wet_and_plugged": ("toaster WET PLUGGED_IN HAS_PLUG", "", ""),
