@@ -1,0 +1,154 @@
+"""Programs for what was read: planned in a home, tidied, run, and held against what was asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from hearth.models.interface import Steps
+from hearth.models.reading.clause_reader import Act
+from hearth.models.reading.instruction_reading import Reading
+from hearth.repair.runnable_predictions import Completion, complete
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.engine import Execution, run
+from hearth.simulation.goals import Progress
+from hearth.simulation.rules import Rules
+from hearth.simulation.world.states import CLOSED, OPEN
+from hearth.simulation.world.world import World
+
+OPENS, CLOSES, WAITS = "Open", "Close", "Wait"
+
+
+class Written(NamedTuple):
+    """A program for a reading in a home.
+
+    Attributes:
+        acts: that were asked for.
+        execution: of the program.
+        sources: for each step, the number of the act that it does; -1 for one that only prepares others.
+        left_out: required acts that cannot be done there, with the reason.
+        unmet: the part of the goals that does not hold at the end.
+    """
+
+    acts: tuple[Act, ...]
+    execution: Execution
+    sources: tuple[int, ...]
+    left_out: tuple[tuple[Act, Failure], ...]
+    unmet: Goal
+
+    @property
+    def does_all(self) -> bool:
+        """Return whether everything that was asked is done."""
+        return not self.left_out and not self.unmet.counts and bool(self.execution.program.steps)
+
+
+def sketch_of(reading: Reading) -> Steps:
+    """Return the acts as steps of one agent."""
+    return tuple(Step(act.action, act.objects) for act in reading.acts)
+
+
+def write_program(reading: Reading, world: World, rules: Rules) -> Written:
+    """Return the program that does what was read, planned by the repairs, without what was forbidden."""
+    acts = _wanted(reading, world)
+    steps = tuple(Step(act.action, act.objects) for act in acts)
+    done = complete(steps, world, world.home.knowledge, rules)
+    execution, sources = _tidied(done, reading, world, rules)
+    left_out = tuple(
+        (act, failure) for step, failure in done.left_out for act in _acts_of(step, acts)[:1] if not act.optional
+    )
+    goal = Goal.of(*reading.goals)
+    return Written(acts, execution, sources, left_out, _unmet(goal, execution))
+
+
+def _wanted(reading: Reading, world: World) -> tuple[Act, ...]:
+    """Return the acts, without those that would change nothing: what is off is not switched off."""
+    found: list[Act] = []
+    for act in reading.acts:
+        if found and act == found[-1] and act.action != WAITS:
+            continue  # said twice
+        found.append(act)
+    return tuple(found)
+
+
+def _acts_of(step: Step, acts: Sequence[Act]) -> list[Act]:
+    return [act for act in acts if act.action == step.action and _nodes(act.objects) == _nodes(step.objects)]
+
+
+def _nodes(objects: Sequence[ObjectRef]) -> tuple[int | None, ...]:
+    return tuple(ref.node for ref in objects)
+
+
+def _unmet(goal: Goal, execution: Execution) -> Goal:
+    return Progress.at(goal, execution.final).unmet() if goal.counts else goal
+
+
+def _tidied(done: Completion, reading: Reading, world: World, rules: Rules) -> tuple[Execution, tuple[int, ...]]:
+    """Return the run of a program that also closes what it opened only to reach what is in it."""
+    execution, sources = done.execution, done.sources
+    forbidden = {(act.action, ref.node) for act in reading.forbidden for ref in act.objects}
+    for at, node in reversed(list(_opened(done))):
+        if (CLOSES, node) in forbidden:
+            continue
+        found = _closed(execution, sources, at, node, world, rules)
+        if found is not None:
+            execution, sources = found
+    return execution, sources
+
+
+def _opened(done: Completion) -> Iterator[tuple[int, int]]:
+    """Yield the furniture that a repair opened and nothing closes: the number of the step, and the node."""
+    steps = done.execution.program.steps
+    home = done.execution.final.home
+    for at, (step, source) in enumerate(zip(steps, done.sources, strict=True)):
+        if step.action != OPENS or source >= 0 or not step.objects or step.objects[0].node is None:
+            continue
+        node = step.objects[0].node
+        index = home.index[node]
+        later = any(each.action in (OPENS, CLOSES) and each.objects[0].node == node for each in steps[at + 1 :])
+        is_open = done.execution.final.states[OPEN] >> index & 1 and not home.doors >> index & 1
+        if is_open and not later:
+            yield at, node
+
+
+def _closed(
+    execution: Execution, sources: tuple[int, ...], opened: int, node: int, world: World, rules: Rules
+) -> tuple[Execution, tuple[int, ...]] | None:
+    """Return a run in which a thing is closed after the last step that uses it or takes from it; None where it fails."""
+    steps = execution.program.steps
+    name = steps[opened].objects[0]
+    index = world.home.index[node]
+    inside = [at for at in range(opened, len(steps)) if _uses(execution, steps[at], at, node, index)]
+    at = max(inside, default=opened) + 1
+    closing = Step(CLOSES, (name,))
+    changed = (*steps[:at], closing, *steps[at:])
+    again = run(world, Program(steps=changed), rules)
+    if again.failure is not None or not again.final.states[CLOSED] >> index & 1:
+        return None
+    return again, (*sources[:at], -1, *sources[at:])
+
+
+def _uses(execution: Execution, step: Step, at: int, node: int, index: int) -> bool:
+    """Return whether a step is about a thing, or about one that is in it before."""
+    from hearth.simulation.world import edge_rows
+
+    world = execution.worlds[at]
+    refs = [ref.node for ref in step.objects if ref.node is not None]
+    return node in refs or any(edge_rows.inside(world, world.home.index[ref]) >> index & 1 for ref in refs)
+
+
+def repeats(steps: Steps) -> bool:
+    """Return whether a program does the same steps over again, besides waiting and walking.
+
+    A list of two steps or more that comes twice in a row is a repetition, and so is a step that follows itself.
+    """
+    acts = [step for step in steps if step.action != WAITS]
+    for size in range(1, len(acts) // 2 + 1):
+        for at in range(len(acts) - 2 * size + 1):
+            if acts[at : at + size] == acts[at + size : at + 2 * size]:
+                return True
+    return False
+
+
+UNDERSTOOD = Code.NOT_UNDERSTOOD
