@@ -9,18 +9,22 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.english_lexicon import verb_lemmas
+from hearth.kb.language.noun_phrases import things_in
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, requests, words
 from hearth.models.reading.scene import Refs, Scene, fits
-from hearth.models.reading.usual_places import usual_place
+from hearth.models.reading.usual_places import usual_place, usual_way
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.program import ObjectRef
 
 PUT_AWAY = "PutAway"
 """The act of the table that brings a thing to its usual place."""
+
+PUT_TO = "PutTo"
+"""The act of the table that puts a thing in or on a place, as is usual for it."""
 
 _CLOSE = "Close"
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
@@ -112,6 +116,14 @@ class ClauseReader:
             return first._replace(forbidden=other.acts) if first and other else None
         return None
 
+    def told(self, text: str) -> Clause:
+        """Return a clause that asks for nothing, with the things that it speaks of."""
+        found = []
+        for name in things_in(self.known, text):
+            if refs := self.scene.some((name,), 1):
+                found.append(Spoken(refs, ""))
+        return Clause(spoken=tuple(reversed(found)))
+
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
         for variant in variants(text):
             for request, pattern, slots in _matches(self.known, variant):
@@ -144,7 +156,9 @@ class ClauseReader:
     def _things(self, text: str, needs: frozenset[str], action: str, spoken: Sequence[Spoken]) -> Refs:
         found: list[ObjectRef] = []
         for mention in mentions_in(self.known, text):
-            if mention.back:
+            if mention.another:
+                refs = self._another(needs, spoken)
+            elif mention.back:
                 refs = self._referred(needs, action, spoken)
             elif mention.words in _DOORS and (own := self._opened(spoken)):
                 refs = own
@@ -156,6 +170,12 @@ class ClauseReader:
                 return ()
             found += [ref for ref in refs if ref not in found]
         return tuple(found)
+
+    def _another(self, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
+        groups = [each.refs for each in spoken if not each.is_place]
+        refs = next((each for each in groups if all(fits(self.known, ref.name, needs) for ref in each)), ())
+        taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
+        return self.scene.others(refs, taken) if refs else ()
 
     def _opened(self, spoken: Sequence[Spoken]) -> Refs:
         """Return the furniture that was spoken of last, where it has a door of its own."""
@@ -189,6 +209,8 @@ class ClauseReader:
     def _argument(
         self, names: tuple[str, ...], many: int, things: Mapping[str, Refs], named: dict[str, Refs]
     ) -> Refs:
+        if names[0].endswith("@"):
+            return self.scene.contents(things.get(names[0][0], ()))
         if is_slot(names[0]):
             return things.get(names[0], ())
         key = "|".join(names)
@@ -205,7 +227,7 @@ class ClauseReader:
         table = words().things
         classes = tuple(each for name in names for each in (table[name] if name not in self.known.objects else (name,)))
         if many == SEVERAL:
-            return self.scene.things(Mention(names[0], classes, SEVERAL), frozenset())
+            return self.scene.things(Mention(names[0], classes, SEVERAL, is_group=True), frozenset())
         return self.scene.some(classes, many)
 
     def _repeated(self, group: Sequence[tuple[ActTemplate, list[Refs]]], text: str) -> Iterator[Act]:
@@ -217,6 +239,8 @@ class ClauseReader:
                 if act.action == PUT_AWAY:
                     action, place = usual_place(self.scene, objects[0])
                     yield Act(action, (objects[0], *place), text)
+                elif act.action == PUT_TO:
+                    yield Act(usual_way(self.known, *objects), objects, text)
                 else:
                     yield Act(act.action, objects, text, act.optional)
 

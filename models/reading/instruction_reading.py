@@ -94,9 +94,11 @@ class _Text:
         if found is not None:
             self._add(found)
             return
-        if (main := _main(text)) and (found := self._read(main, self.spoken)) is not None:
-            self._add(found)
-            return
+        if parts := _main(text):
+            told = self.clauses.told(parts[0])
+            if (found := self._read(parts[1], (*told.spoken, *self.spoken))) is not None:
+                self._add((told, *found))
+                return
         self._in_part(text)
 
     def _add(self, clauses: Sequence[Clause]) -> None:
@@ -133,7 +135,7 @@ class _Text:
         read = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
         if read is None and verb and not text.startswith(verb):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken)
-        return Clause() if read is None and is_aside(text) else read
+        return self.clauses.told(text) if read is None and is_aside(text) else read
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
@@ -192,14 +194,14 @@ def _ordered(text: str) -> list[tuple[str, str]]:
 
 _SUBORDINATE = re.compile(
     r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to|for|at|in) "
-    r".+?, (.+)"
+    r"(.+?), (.+)"
 )
 
 
-def _main(text: str) -> str:
-    """Return a sentence without the clause before its comma that says when or why; "" where there is none."""
+def _main(text: str) -> tuple[str, str] | None:
+    """Return the clause of a sentence that says when or why, and what stands behind its comma; None without one."""
     found = _SUBORDINATE.fullmatch(text)
-    return found[1] if found else ""
+    return (found[1], found[2]) if found else None
 
 
 def is_aside(text: str) -> bool:

@@ -30,6 +30,7 @@ _PRONOUN = re.compile(
     r"|the (?:first|second|other|last)(?: one)?|that one|this one|the same(?: one)?|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
+_ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
 _PLACE = re.compile(
     r" (?:,? ?(?:that|which)(?: is| are|'s| was| were| you find| i left| you can find| lies| stands| sits)? |lying |standing "
     r"|sitting |hanging |located |found |kept |stored )?"
@@ -58,6 +59,8 @@ class Mention:
         places: where they are: INSIDE, ON or "" for near, and the classes of the place.
         others: classes and places of things that are left out.
         back: whether they are those of words before, as of `it`.
+        is_group: whether a plural means things of all its classes, as `dishes` does.
+        another: whether they are others of the kind of which words before were.
     """
 
     words: str
@@ -66,6 +69,8 @@ class Mention:
     places: tuple[tuple[str, tuple[str, ...]], ...] = ()
     others: tuple[Mention, ...] = ()
     back: bool = False
+    is_group: bool = False
+    another: bool = False
 
 
 @lru_cache(maxsize=65_536)
@@ -95,6 +100,10 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     text = text.strip(" ,")
     if not text or len(text.split()) > _LONGEST * 2:
         return None
+    if _ANOTHER.fullmatch(text):
+        return Mention(text, back=True, another=True)
+    if text == "everything":
+        return Mention(text, words().things["device"], EVERY, is_group=True)
     if _PRONOUN.fullmatch(text):
         return Mention(text, count=SEVERAL, back=True)
     if found := _EXCEPT.search(text):
@@ -105,7 +114,7 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     if (placed := _placed(known, text, rest, count)) is not None:
         return placed
     if classes := _classes(known, rest):
-        return Mention(text, classes, _number(known, rest, classes, count))
+        return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
     return _in_room(known, text, rest, count) or _plain(known, text)
 
 
@@ -141,7 +150,7 @@ def _is_plural(known: Knowledge, text: str, name: str) -> bool:
 @lru_cache(maxsize=65_536)
 def _classes(known: Knowledge, text: str) -> tuple[str, ...]:
     """Return the classes of a noun phrase without number and place."""
-    plain = _DETERMINERS.sub("", f"{text} ", count=1).strip() if _DETERMINERS.match(f"{text} ") else text
+    plain = _plain_noun(text)
     if not plain:
         return ()
     table = words().things
@@ -153,6 +162,17 @@ def _classes(known: Knowledge, text: str) -> tuple[str, ...]:
     if thing is None:
         return ()
     return (thing, *(each for each in known.stand_ins(thing) if _is_alike(known, thing, each)))
+
+
+def _is_group(text: str) -> bool:
+    """Return whether a noun phrase is one of several classes, as `dishes` is."""
+    plain = _plain_noun(text)
+    before, space, last = plain.rpartition(" ")
+    return any(name in words().groups for name in (plain, *(f"{before}{space}{one}" for one in noun_lemmas(last))))
+
+
+def _plain_noun(text: str) -> str:
+    return _DETERMINERS.sub("", f"{text} ", count=1).strip() if _DETERMINERS.match(f"{text} ") else text
 
 
 def _is_alike(known: Knowledge, name: str, other: str) -> bool:
@@ -168,13 +188,14 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
         if not classes:
             continue
         number = _number(known, rest[: found.start()], classes, count)
+        is_group = _is_group(rest[: found.start()])
         if found[1] in ("for", "belonging to"):
-            return Mention(text, classes, number)
+            return Mention(text, classes, number, is_group=is_group)
         place = mention_of(known, rest[found.end() :])
         if place is None or place.back:
             continue
         relation = _RELATION.get(found[1], "")
-        return Mention(text, classes, number, ((relation, place.classes), *place.places))
+        return Mention(text, classes, number, ((relation, place.classes), *place.places), is_group=is_group)
     return None
 
 

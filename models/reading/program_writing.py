@@ -51,7 +51,7 @@ def sketch_of(reading: Reading) -> Steps:
 
 def write_program(reading: Reading, world: World, rules: Rules) -> Written:
     """Return the program that does what was read, planned by the repairs, without what was forbidden."""
-    acts = _wanted(reading, world)
+    acts = _wanted(reading.acts)
     steps = tuple(Step(act.action, act.objects) for act in acts)
     done = complete(steps, world, world.home.knowledge, rules)
     execution, sources = _tidied(done, reading, world, rules)
@@ -62,14 +62,24 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
     return Written(acts, execution, sources, left_out, _unmet(goal, execution))
 
 
-def _wanted(reading: Reading, world: World) -> tuple[Act, ...]:
-    """Return the acts, without those that would change nothing: what is off is not switched off."""
+def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
+    """Return acts without those that were done already, with nothing done to their things since: a brake on repetition."""
     found: list[Act] = []
-    for act in reading.acts:
-        if found and act == found[-1] and act.action != WAITS:
-            continue  # said twice
-        found.append(act)
+    for act in acts:
+        same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
+        since = found[same + 1 :] if same >= 0 else ()
+        if act.action == WAITS or same < 0 or any(_concerns(each, act) for each in since):
+            found.append(act)
     return tuple(found)
+
+
+def _is_same(one: Act, other: Act) -> bool:
+    return one.action == other.action and _nodes(one.objects) == _nodes(other.objects)
+
+
+def _concerns(one: Act, other: Act) -> bool:
+    """Return whether an act is about things of another; about a posture, where the other has no thing."""
+    return bool({ref.node for ref in one.objects} & {ref.node for ref in other.objects}) or not other.objects
 
 
 def _acts_of(step: Step, acts: Sequence[Act]) -> list[Act]:

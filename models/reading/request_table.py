@@ -70,14 +70,14 @@ class Request(NamedTuple):
 
 
 class Words(NamedTuple):
-    """The words around requests (`request_words.yaml`)."""
+    """The words around requests (`request_words.yaml`); `groups` are the nouns of `things` that mean several classes."""
 
     courtesy: re.Pattern[str]
     openings: re.Pattern[str]
     endings: tuple[re.Pattern[str], ...]
     asides: re.Pattern[str]
     things: Mapping[str, tuple[str, ...]]
-    outside: re.Pattern[str]
+    groups: frozenset[str]
 
 
 def is_slot(name: str) -> bool:
@@ -152,8 +152,8 @@ def words() -> Words:
         re.compile(rf"(?:{'|'.join(data['openings'])})(?![\w'])[\s,:]*"),
         tuple(re.compile(rf",? {each}$") for each in data["endings"]),
         re.compile("|".join(data["asides"])),
-        {name: tuple(classes) for name, classes in data["things"].items()},
-        re.compile(data["outside"]),
+        {name: tuple(classes) for kind in ("things", "groups") for name, classes in data[kind].items()},
+        frozenset(data["groups"]),
     )
 
 

@@ -65,9 +65,18 @@ class Scene:
         ordered = self._ordered([node for node in found if node not in left_out], action)
         if mention.count > 0:
             ordered = ordered[: mention.count] if len(ordered) >= mention.count else []
-        elif mention.count == SEVERAL and self._is_carried(ordered):
-            ordered = ordered[:MOST_CARRIED]
+        else:
+            ordered = self._to_change(ordered, action)
+            if mention.count == SEVERAL and self._is_carried(ordered):
+                ordered = ordered[:MOST_CARRIED]
         return tuple(map(self._ref, ordered)) if len(ordered) <= MOST else ()
+
+    def _to_change(self, nodes: list[int], action: str) -> list[int]:
+        """Return the things on which an act changes something; all where it changes none."""
+        assert self.world is not None
+        state = self.known.state_of(action) if action else ""
+        done = self.world.states[STATE_ID[state]] if state in STATE_ID and state in OPPOSITE else 0
+        return [i for i in nodes if not done >> i & 1] or nodes
 
     def some(self, names: Sequence[str], count: int, taken: Collection[int] = ()) -> Refs:
         """Return so many things of the first class of which the home has enough."""
@@ -79,6 +88,21 @@ class Scene:
                 return tuple(map(self._ref, nodes[:count]))
         return ()
 
+    def others(self, refs: Refs, taken: Collection[int]) -> Refs:
+        """Return another thing of the class of some things, none of those that are taken."""
+        if self.world is None:
+            return (ObjectRef(refs[0].name, len(refs) + 1),)
+        nodes = [i for i in indices(self.world.home.instances(refs[0].name)) if self.world.home.ids[i] not in taken]
+        return tuple(map(self._ref, self._ordered(nodes, "")[:1]))
+
+    def contents(self, refs: Refs) -> Refs:
+        """Return the movable things in some furniture; none without a home."""
+        if self.world is None:
+            return ()
+        movable = self.world.home.properties["GRABBABLE"]
+        inside = (edge_rows.contents(self.world, self.index(ref)) & movable for ref in refs)
+        return tuple(self._ref(i) for mask in inside for i in indices(mask))
+
     def _is_carried(self, nodes: Iterable[int]) -> bool:
         assert self.world is not None
         movable = self.world.home.properties["GRABBABLE"]
@@ -88,12 +112,15 @@ class Scene:
         """Return the nodes of the first class that the home has where it is said, or of all classes of a plural."""
         assert self.world is not None
         found: list[int] = []
+        is_all = mention.count <= 0 and mention.is_group
         for is_placed in (True, False) if mention.places else (False,):
             for name in classes:
                 nodes = [i for i in indices(self.world.home.instances(name)) if i not in found]
                 found += [i for i in nodes if not is_placed or self._is_at(i, mention)]
-                if found and mention.count > 0 and len(found) >= mention.count:
+                if not is_all and len(found) >= max(mention.count, 1):
                     return found
+                if not is_all and not mention.is_group:
+                    found = []  # cups are not made up of one cup and one mug
             if found:
                 return found
             if is_placed and any(self._is_room_place(names) for _, names in mention.places):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.scene import Refs, Scene
 from hearth.schemas.program import ObjectRef
 
@@ -26,6 +27,16 @@ def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
         if refs:
             return _ACTIONS[each.relation], refs
     return "", ()
+
+
+def usual_way(known: Knowledge, thing: ObjectRef, place: ObjectRef) -> str:
+    """Return the act by which a thing is put in or on a place, as is usual for it there."""
+    is_in, is_on = known.has(place.name, "CONTAINERS") or known.has(place.name, "RECIPIENT"), known.has(place.name, "SURFACES")
+    if is_in and is_on:
+        usual = [each for each in known.placements(thing.name) if each.destination == place.name]
+        weights = {_ACTIONS[each.relation]: each.weight for each in usual if each.relation in _ACTIONS}
+        return max(sorted(weights, reverse=True), key=lambda each: weights[each]) if weights else "PutBack"
+    return "PutIn" if is_in else "PutBack"
 
 
 def _is_furniture(scene: Scene, name: str) -> bool:
