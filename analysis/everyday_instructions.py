@@ -26,6 +26,7 @@ from hearth.schemas.goals import Goal
 from hearth.schemas.literals import AGENT, Literal, Name
 from hearth.schemas.program import Program
 from hearth.schemas.rng import rng
+from hearth.schemas.vocabulary import OPPOSITE
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goal_trace import acts
@@ -101,10 +102,21 @@ def start_without(goal: Goal, home: str, seed: str) -> World:
     base = prepared(home_named(home, default().of_set(LATEST)))
     world = base.start
     chooser = rng(0, "everyday", seed, home)
-    wanted = Goal(tuple((literal, 1) for literal in dict.fromkeys(_facts(goal, world))))
+    facts = dict.fromkeys(each for each in _facts(goal, world) if not _is_undone_by(each, goal, world))
+    wanted = Goal(tuple((literal, 1) for literal in facts))
     for literal, _ in wanted:
         world = _without(world, base, literal, wanted, chooser)
     return world
+
+
+def _is_undone_by(fact: Literal[Name], goal: Goal, world: World) -> bool:
+    """Return whether a goal wants an act that ends a state, too: what is opened and closed is closed at the start."""
+    known = world.home.knowledge
+    for literal, _ in goal.literals():
+        made = known.state_of(literal.name) if acts(literal, world.home) else literal.name
+        if literal.terms == fact.terms and made and OPPOSITE.get(fact.name) == made:
+            return True
+    return False
 
 
 def _facts(goal: Goal, world: World) -> Iterator[Literal[Name]]:

@@ -13,8 +13,10 @@ from hearth.kb.language.noun_phrases import things_in
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
+from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, requests, words
+from hearth.models.reading.rewordings import rewordings
 from hearth.models.reading.scene import Refs, Scene, fits
 from hearth.models.reading.usual_places import usual_place, usual_way
 from hearth.schemas.literals import Literal, Name
@@ -26,6 +28,9 @@ PUT_AWAY = "PutAway"
 PUT_TO = "PutTo"
 """The act of the table that puts a thing in or on a place, as is usual for it."""
 
+DEEPEST = 2
+"""Rewordings of a clause within one another, at most."""
+
 _CLOSE = "Close"
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
 _HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
@@ -35,7 +40,9 @@ _NEGATION = re.compile(
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
-_BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not) ((?:[a-z]+ing|[a-z]+) .+)")
+_BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't|but do not|and don't|but never|as long as you (?:don't|do not)"
+    r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
+)
 
 
 class Act(NamedTuple):
@@ -95,13 +102,14 @@ class ClauseReader:
         self.scene, self.known = scene, scene.known
         self.missing: dict[str, None] = {}
 
-    def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True) -> Clause | None:
+    def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True, depth: int = 0) -> Clause | None:
         """Return what a clause asks for; None where it is not understood.
 
         Args:
             text: in small letters.
             spoken: the things of the clauses before, the last first.
-            steps: also as the reader of programs in words does; not for several clauses, which it would read as one.
+            steps: also as the reader of programs in words does, and in other words; not for several clauses.
+            depth: how often the clause was reworded.
         """
         plain = plain_words(text)
         if not plain:
@@ -113,7 +121,23 @@ class ClauseReader:
             return found
         if back := _BACKWARD.fullmatch(plain):
             first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
-            return first._replace(forbidden=other.acts) if first and other else None
+            if first and other:
+                return first._replace(forbidden=other.acts)
+        return self._reworded(plain, spoken, depth) if steps and depth < DEEPEST else None
+
+    def _reworded(self, text: str, spoken: Sequence[Spoken], depth: int) -> Clause | None:
+        """Return what a clause asks for in other words."""
+        for clauses in rewordings(self.known, text):
+            found, now = Clause(), tuple(spoken)
+            for each in clauses:
+                read = self.read(each, now, depth=depth + 1)
+                if read is None:
+                    break
+                now = (*read.spoken, *now)
+                found = Clause(found.acts + read.acts, found.goals + read.goals, read.spoken + found.spoken,
+                               found.forbidden + read.forbidden)  # fmt: skip
+            else:
+                return found
         return None
 
     def told(self, text: str) -> Clause:
@@ -123,6 +147,12 @@ class ClauseReader:
             if refs := self.scene.some((name,), 1):
                 found.append(Spoken(refs, ""))
         return Clause(spoken=tuple(reversed(found)))
+
+    def named(self, text: str) -> Clause | None:
+        """Return a part that only names things, of which the next may say more; None where it is no name."""
+        mentions = mentions_in(self.known, plain_words(text))
+        refs = [self.scene.things(each, frozenset()) for each in mentions if not each.back]
+        return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None
 
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
         for variant in variants(text):
@@ -144,6 +174,8 @@ class ClauseReader:
                     continue
                 first = next((act.action for act in way if name in act.slots), "")
                 things[name] = self._things(slots[name], needs, first, spoken)
+            for name, needs in request.it.items():
+                things[name] = self._referred(needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place)))
             if not all(things.values()):
                 return None
             made = self._made(way, things, count, text)
@@ -250,7 +282,7 @@ class ClauseReader:
         for fuzzy in (Fuzzy.OFF, Fuzzy.TYPOS):
             acts: list[Act] = []
             for asked in asked_steps(self.known, text, said, fuzzy):
-                if asked.left_out:
+                if asked.left_out or not self._is_afforded(asked.meant):
                     return None
                 refs = tuple(self._named(name, asked.instance if not at else 1, spoken)
                              for at, name in enumerate(asked.meant.names))  # fmt: skip
@@ -261,6 +293,9 @@ class ClauseReader:
             if acts:
                 return Clause(tuple(acts), (), _spoken(acts, {}, ()))
         return None
+
+    def _is_afforded(self, meant: Candidate) -> bool:
+        return all(self.known.affords(meant.action.name, at, name) for at, name in enumerate(meant.names))
 
     def _named(self, name: str, number: int, spoken: Sequence[Spoken]) -> ObjectRef | None:
         before = next((ref for each in spoken for ref in each.refs if ref.name == name), None)

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_reader import Act, Clause, ClauseReader, Spoken, plain_words
 from hearth.models.reading.request_table import words
+from hearth.models.reading.rewordings import orders
 from hearth.models.reading.scene import Scene
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
@@ -22,14 +23,16 @@ MOST_PARTS = 14
 MOST_TRIED = 120
 """Joined parts of a sentence that are tried, at most."""
 
-_SENTENCES = re.compile(r"(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
-_PARTS = re.compile(r"(,? and then |,? then |;? and also |,? and |,? but |,? plus |[;,:] (?:and )?| - | – |\. )")
-_FIRST = re.compile(
-    r"(?:after|once|when|as soon as|having) (?:you(?:'ve| have| are|'re)? (?:have )?(?:finished |done )?)?(.+?), (?:then )?(.+)"
+_SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
+_PARTS = re.compile(
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus |,? so (?!that\b)"
+    r"|[;,:] (?:and )?| - | – | — |\. )"
 )
-_LATER = re.compile(r"before (?:you )?(.+?), (.+)")
-_AFTER = re.compile(r"(.+?),? (?:after|once|as soon as|but first|but before that) (?:you(?:'ve| have)? |having )?(.+)")
-_BEFORE = re.compile(r"(.+?),? before (?:you )?(.+)")
+_ALTERNATIVE = re.compile(
+    r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise|say|preferably|ideally"
+    r"|if need be)\b(?: .*)?"
+)
+_TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to ")
 _VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
 
@@ -84,22 +87,41 @@ class _Text:
         if (whole := self.clauses.read(text, self.spoken, steps=_PARTS.search(text) is None)) is not None:
             self._add((whole,))
             return
-        for first, later in _ordered(text):
-            one = self._read(first, self.spoken)
-            two = self._read(later, (*_all_spoken(one), *self.spoken)) if one else None
-            if one and two:
-                self._add((*one, *two))
-                return
-        found = self._read(text, self.spoken)
-        if found is not None:
-            self._add(found)
-            return
-        if parts := _main(text):
-            told = self.clauses.told(parts[0])
-            if (found := self._read(parts[1], (*told.spoken, *self.spoken))) is not None:
-                self._add((told, *found))
+        for read in (self._in_order, self._read, self._titled, self._subordinate):
+            found = read(text, self.spoken)
+            if found is not None:
+                self._add(found)
                 return
         self._in_part(text)
+
+    def _in_order(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of a sentence with `before` or `after`; what is said first may be what a pronoun means."""
+        for first, later in orders(text):
+            main = self._read(later, spoken)
+            known = (*_all_spoken(main), *spoken)
+            one = self._read(first, known) or self._read(f"make sure {first}", known)
+            two = self._read(later, (*_all_spoken(one), *known)) if one else None
+            if one and two and any(each.acts for each in one):
+                return (*one, *two)
+        return None
+
+    def _titled(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses behind a title, as in `movie night: close the curtains`."""
+        found = _TITLE.fullmatch(text)
+        if not found:
+            return None
+        told = self.clauses.told(found["title"])
+        read = self._read(found["rest"], (*told.spoken, *spoken))
+        return (told, *read) if read and any(each.acts for each in read) else None
+
+    def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of a sentence without that before its comma that says when or why."""
+        parts = _main(text)
+        if not parts:
+            return None
+        told = self.clauses.told(parts[0])
+        read = self._read(parts[1], (*told.spoken, *spoken))
+        return (told, *read) if read else None
 
     def _add(self, clauses: Sequence[Clause]) -> None:
         self.found += clauses
@@ -132,10 +154,21 @@ class _Text:
 
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
-        read = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
-        if read is None and verb and not text.startswith(verb):
-            read = self.clauses.read(f"{verb} {plain_words(text)}", spoken)
-        return self.clauses.told(text) if read is None and is_aside(text) else read
+        is_single = _PARTS.search(text) is None
+        read = self.clauses.read(text, spoken, steps=is_single)
+        if read is not None:
+            return read
+        if verb and not text.startswith(verb):
+            read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
+        if read is None and is_single:
+            read = self._told(text, spoken)
+        return read
+
+    def _told(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
+        """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
+        if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
+            return self.clauses.told(text)
+        return self.clauses.named(text)
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
@@ -176,20 +209,6 @@ def _glued(parts: Sequence[str], joints: Sequence[str]) -> str:
 
 def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
-
-
-def _ordered(text: str) -> list[tuple[str, str]]:
-    """Return a sentence with `before` or `after` as what is done first and what is done later."""
-    found = []
-    if match := _FIRST.fullmatch(text):
-        found.append((match[1], match[2]))
-    if match := _LATER.fullmatch(text):
-        found.append((match[2], match[1]))
-    if match := _AFTER.fullmatch(text):
-        found.append((match[2], match[1]))
-    if match := _BEFORE.fullmatch(text):
-        found.append((match[1], match[2]))
-    return found
 
 
 _SUBORDINATE = re.compile(

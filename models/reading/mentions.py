@@ -20,7 +20,7 @@ _COUNT = re.compile(
     r"(?:the |my |your |our |these |those )?(a couple of|a pair of|both|one|two|three|four|five|six|seven|eight|nine|ten"
     r"|\d{1,2}|another)(?: of)?(?: the| my| your| our| these| those)? (?=\S)"
 )
-_FEW = re.compile(r"(?:some|a few|several|a bunch of|a number of|a handful of) ")
+_FEW = re.compile(r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) ")
 _DETERMINERS = re.compile(
     r"(?:(?:the|a|an|some|any|my|your|his|her|our|their|its|this|that|these|those|one of|a bit of|a little|a piece of"
     r"|a slice of|the rest of|the whole|whole|entire|other|same|which|what)\s+)+"
@@ -40,6 +40,7 @@ _PLACE = re.compile(
 _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides) (?=\S)")
 _ALL_BEHIND = re.compile(r" (?:all|both|each)$")
 _LISTED = re.compile(r",? (?:and|or|as well as|along with|together with|plus|&)(?: also)? |, ")
+_LAMP = re.compile(r"(?:the |my |your |both )?(desk|bedside|nightstand|table|counter|shelf|bookshelf|dresser) (lamps?|lights?)")
 _PACKAGE = re.compile(r" (?:carton|bottle|box|jar|packet|pack|bag|tube|tub|container|set|machine|unit|appliance)$")
 _RELATION = {"in": "INSIDE", "inside": "INSIDE", "from inside": "INSIDE", "out of": "INSIDE"} | {
     "on": "ON", "on top of": "ON", "off": "ON", "off of": "ON",
@@ -111,6 +112,9 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         others = mentions_in(known, re.sub(r"^the one\b", left.words if left else "", text[found.end() :]))
         return replace(left, words=text, others=others) if left and others else None
     rest, count = _counted(text)
+    if (lamp := _LAMP.fullmatch(rest)) and (place := words().things.get(lamp[1]) or _classes(known, lamp[1])):
+        number = EVERY if count == EVERY else SEVERAL if lamp[2].endswith("s") else count or 1
+        return Mention(text, words().things["lamp"], number, (("ON", place),), is_group=True)
     if (placed := _placed(known, text, rest, count)) is not None:
         return placed
     if classes := _classes(known, rest):

@@ -62,11 +62,13 @@ class Request(NamedTuple):
         patterns: those of clauses that ask for it.
         ways: lists of acts, the first to be preferred.
         goal: literals that are to hold at the end, with slots as terms.
+        it: slots that no word names, with what the last thing that was spoken of must be to fill them.
     """
 
     patterns: tuple[Pattern, ...]
     ways: tuple[tuple[ActTemplate, ...], ...]
     goal: tuple[Literal[str], ...]
+    it: Mapping[str, frozenset[str]]
 
 
 class Words(NamedTuple):
@@ -98,7 +100,8 @@ def _request(row: Mapping[str, Any], groups: Mapping[str, str]) -> Request:
     ways = tuple(tuple(map(_act, way)) for way in (row["do"], *row.get("or", ())))
     goals = (re.fullmatch(r"(\w+)\(([^()]+)\)", text) for text in row.get("goal", ()))
     literals = tuple(Literal.of(found[1], *re.split(", *", found[2])) for found in goals if found)
-    return Request(tuple(_pattern(text, groups) for text in row["say"]), ways, literals)
+    it = {slot: frozenset(needs.split("|")) for slot, needs in row.get("it", {}).items()}
+    return Request(tuple(_pattern(text, groups) for text in row["say"]), ways, literals, it)
 
 
 def _alternatives(words: list[str]) -> str:

@@ -1,0 +1,189 @@
+"""Rewordings: a clause as one or several plainer clauses, as a passive, a light verb or an order of two acts is."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from functools import lru_cache
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
+from hearth.models.reading.mentions import mentions_in
+
+Clauses = tuple[str, ...]
+"""Plainer clauses, in the order in which they are to be done."""
+
+_DUTY = (
+    r"(?:should|must|shall|(?:still )?(?:has|have) to|(?:still )?needs? to|can|could|may|might|ought to|is to|are to|wants? to"
+    r"|had better|will have to|'s got to|has got to|have got to|deserves? to|is meant to|are meant to|would like to)"
+)
+_BETWEEN = r"(?: (?:now|then|all|both|please|also|still|first|afterwards|again|just|really|next))*"
+_STATE = (
+    r"(?:(?:switched |turned |left |kept |wide |firmly |put )?(?:on|off|open|closed|shut|drawn|running|out|going|lit|burning"
+    r"|plugged in|unplugged|clean|ajar|opened|away))"
+)
+_PASSIVE = (
+    re.compile(rf"(?P<np>.+?) {_DUTY}{_BETWEEN} (?:be|get){_BETWEEN} (?P<verb>[a-z]+)(?P<rest> .+)?"),
+    re.compile(rf"(?:could|can|would|may|might|should|must) (?P<np>.+?){_BETWEEN} (?:be|get){_BETWEEN} (?P<verb>[a-z]+)(?P<rest> .+)?"),
+    re.compile(r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
+    re.compile(r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
+    re.compile(r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?|deserves?) (?:some )?(?P<verb>[a-z]+ing)(?P<rest> .+)?"),
+    re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
+)  # fmt: skip
+_GIVEN = re.compile(
+    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real |careful |[a-z]+y )*"
+    r"(?P<verb>[a-z]+)"
+)
+_NEEDS_ONE = re.compile(
+    r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "
+    r"(?:good |quick |proper |nice |little |thorough )*(?P<verb>[a-z]+)"
+)
+_LIGHT = re.compile(
+    r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another|some|the) (?:good |quick |proper |nice |little |long |short "
+    r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
+)
+_SPENT = re.compile(r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>[a-z]+ing)\b(?P<rest> .+)?")
+_SPENT_IN = re.compile(
+    r"spend (?:some |a |the )?(?:while|time|bit|moment|evening|hour|minute|afternoon)? ?(?P<place>(?:in|on|at) .+?) (?P<verb>[a-z]+ing)"
+    r"(?P<rest> .+)?"
+)
+_TOOL_FIRST = re.compile(r"(?:use|using|take|get|grab|with) (?P<np>.+?)(?: to|,| and) (?P<clause>[a-z]+(?: .+)?)")
+_TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
+_BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
+_BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
+_WITH_STATE = (
+    re.compile(rf"with (?P<state>.+? {_STATE}),? (?P<clause>[a-z]+ .+)"),
+    re.compile(rf"(?P<clause>.+?),? (?:with|while|but with|and keep|and have) (?P<state>.+? {_STATE})"),
+)
+_UNTIL = re.compile(
+    r"(?:do not|don't|never|not) (?P<main>.+?) (?:until|till|before|unless) (?:you(?:'ve| have)? |having )?(?P<first>.+)"
+)
+_NOT_UNTIL = re.compile(r"(?P<main>.+?),? (?:but )?not (?:until|before) (?:you(?:'ve| have)? )?(?P<first>.+)")
+_BUT_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and|only)(?: please)? (?P<first>.+?) (?:first|beforehand|before that|before)")
+_THE_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and) (?:first|before that|beforehand),? (?P<first>.+)")
+_AFTER = re.compile(
+    r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
+    r" (?:(?:you|you've|you have|you are|you're|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+)"
+)
+_AFTER_FIRST = re.compile(
+    r"(?:only |right |just )?(?:after|once|when|as soon as|upon|having)"
+    r" (?:(?:you|you've|you have|you are|you're|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+?), "
+    r"(?:then |only then )?(?P<main>.+)"
+)
+_BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
+_BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
+_PREPOSITION = re.compile(r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)")
+_OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
+_PARTICLE = re.compile(
+    r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?"
+)
+_IT_STATE = re.compile(rf"(?:and |but )?(?P<state>{_STATE})(?: again)?")
+_THERE = re.compile(r"(?P<clause>.+) (?:on |in |over )?there")
+_ITS_PLUG = re.compile(r"(?:pull|take|remove|disconnect)(?: out)? its plug(?: out)?")
+
+
+def rewordings(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield what a clause says in plainer clauses, the likeliest first; none that it is not certain to say."""
+    seen: dict[Clauses, None] = {}
+    for way in _WAYS:
+        for clauses in way(known, text):
+            if clauses not in seen and clauses != (text,) and all(clauses):
+                seen.setdefault(clauses)
+                yield clauses
+
+
+def orders(text: str) -> Iterator[tuple[str, str]]:
+    """Yield a sentence as what is done first and what is done later, the likeliest first."""
+    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _BEFORE):
+        if found := pattern.fullmatch(text):
+            yield found["first"].strip(" ,"), found["main"].strip(" ,")
+
+
+def _passive(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `open the curtains` of `the curtains should be opened`, and so on."""
+    for pattern in _PASSIVE:
+        found = pattern.fullmatch(text)
+        if not found or not _is_thing(known, found["np"]):
+            continue
+        for lemma in _verbs(found["verb"]):
+            rest = found["rest"] or ""
+            yield (f"{lemma} {found['np']}{rest}",)
+            if rest:
+                yield (f"{lemma}{rest} {found['np']}",)
+
+
+def _light(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `rinse the cup` of `give the cup a rinse`, and `look at it` of `have a look at it`."""
+    for pattern in (_GIVEN, _NEEDS_ONE):
+        found = pattern.fullmatch(text)
+        if found and is_verb(found["verb"]) and _is_thing(known, found["np"]):
+            yield from ((f"{lemma} {found['np']}",) for lemma in _verbs(found["verb"]))
+    if (found := _LIGHT.fullmatch(text)) and is_verb(found["verb"]):
+        rest = re.sub(r"^ of ", " ", found["rest"] or "")
+        yield from ((f"{lemma}{rest}",) for lemma in _verbs(found["verb"]))
+    if found := _SPENT.fullmatch(text):
+        yield from ((f"{lemma}{found['rest'] or ''}",) for lemma in _verbs(found["verb"]))
+    if found := _SPENT_IN.fullmatch(text):
+        yield from ((f"{lemma}{found['rest'] or ''} {found['place']}",) for lemma in _verbs(found["verb"]))
+
+
+def _tool(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `grab the sponge` and `clean the sink` of `clean the sink with the sponge`."""
+    if (found := _TOOL_FIRST.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"grab {found['np']}", found["clause"])
+        yield (f"{found['clause']} {found['np']}",)
+        yield (f"{found['clause']} on {found['np']}",)
+        yield (found["clause"],)
+    if (found := _TOOL_LAST.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"grab {found['np']}", found["clause"])
+        yield (f"{found['clause']} on {found['np']}",)
+    if found := _BY.fullmatch(text):
+        yield (found["clause"],)
+
+
+def _two(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `open it` and `close it` of `open and close it`."""
+    found = _BOTH.fullmatch(text)
+    if found and is_verb(found["one"]) and is_verb(found["other"]):
+        yield (f"{found['one']}{found['rest']}", f"{found['other']}{found['rest']}")
+
+
+def _with_state(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `the curtains shut` and `watch tv` of `with the curtains shut, watch tv`."""
+    for pattern in _WITH_STATE:
+        if found := pattern.fullmatch(text):
+            yield (*re.split(r",? and ", found["state"]), found["clause"])
+
+
+def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield a clause about what was spoken of before, that leaves this out: `and into the sink`, `then off again`."""
+    if _ITS_PLUG.fullmatch(text):
+        yield ("unplug it",)
+    if found := _OFF_TO.fullmatch(text):
+        yield (f"go to {found['place']}",)
+    if found := _PREPOSITION.fullmatch(text):
+        yield (f"put it {found['to']}",)
+        yield (f"go {found['to']}",)
+    if found := _PARTICLE.fullmatch(text):
+        yield (f"turn it {found['state']}",)
+    if found := _IT_STATE.fullmatch(text):
+        yield (f"make sure it is {found['state']}",)
+    if found := _THERE.fullmatch(text):
+        yield (found["clause"],)
+    first, space, rest = text.partition(" ")
+    if is_verb(first) and (not rest or re.match(r"(?:in|into|on|onto|up|down|off|out|back|away|at|to|under|with)\b", rest)):
+        yield (f"{first} it{space}{rest}",)
+
+
+_WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
+    _light, _passive, _tool, _two, _with_state, _without_object,
+)  # fmt: skip
+
+
+@lru_cache(maxsize=4096)
+def _is_thing(known: Knowledge, text: str) -> bool:
+    return bool(mentions_in(known, text))
+
+
+def _verbs(word: str) -> tuple[str, ...]:
+    return tuple(dict.fromkeys((*verb_lemmas(word), *((word,) if is_verb(word) else ()))))
