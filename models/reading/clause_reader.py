@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.english_lexicon import verb_lemmas
+from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
 from hearth.kb.language.noun_phrases import things_in
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
@@ -39,6 +39,8 @@ _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
+_WHERE = re.compile(r"(?:to|on|in|into|near|by|over|up|out|and|back|home|online|outside|through|around|for|down|inside|next|stand|close to)\b")
+_LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
 _BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't|but do not|and don't|but never|as long as you (?:don't|do not)"
     r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
@@ -117,20 +119,34 @@ class ClauseReader:
         if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
             found = self._asked(negated[1], spoken, steps)
             return Clause(forbidden=found.acts) if found else None
+        plain = self._placed(plain, spoken)
         if (found := self._asked(plain, spoken, steps)) is not None:
             return found
         if back := _BACKWARD.fullmatch(plain):
             first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
             if first and other:
                 return first._replace(forbidden=other.acts)
-        return self._reworded(plain, spoken, depth) if steps and depth < DEEPEST else None
+        return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
 
-    def _reworded(self, text: str, spoken: Sequence[Spoken], depth: int) -> Clause | None:
+    def _placed(self, text: str, spoken: Sequence[Spoken]) -> str:
+        """Return a clause with the name of the place that its `there` stands for."""
+        if not text.endswith(" there"):
+            return text
+        for each in spoken:
+            name = each.refs[0].name.replace("_", " ")
+            if self.known.is_room(each.refs[0].name):
+                return f"{text.removesuffix(' there')} in the {name}"
+            if each.is_place and _LEFT.match(text):
+                way = usual_way(self.known, each.refs[0], each.refs[0])
+                return f"{text.removesuffix(' there')} {'in' if way == 'PutIn' else 'on'} the {name}"
+        return text
+
+    def _reworded(self, text: str, spoken: Sequence[Spoken], depth: int, steps: bool) -> Clause | None:
         """Return what a clause asks for in other words."""
         for clauses in rewordings(self.known, text):
             found, now = Clause(), tuple(spoken)
             for each in clauses:
-                read = self.read(each, now, depth=depth + 1)
+                read = self.read(each, now, steps=steps, depth=depth + 1)
                 if read is None:
                     break
                 now = (*read.spoken, *now)
@@ -181,8 +197,9 @@ class ClauseReader:
             made = self._made(way, things, count, text)
             if made is not None:
                 acts, named = made
+                is_back = {name for name in pattern.needs if slots[name] and _is_back(self.known, slots[name])}
                 goals = tuple(each for goal in request.goal for each in _bound(goal, things, named))
-                return Clause(acts, goals, _spoken(acts, things, way))
+                return Clause(acts, goals, _spoken(acts, things, way, is_back, named))
         return None
 
     def _things(self, text: str, needs: frozenset[str], action: str, spoken: Sequence[Spoken]) -> Refs:
@@ -326,15 +343,31 @@ def _bound(goal: Literal[str], things: Mapping[str, Refs], named: Mapping[str, R
     yield from (Literal(goal.name, (ref.node if ref.node is not None else ref.name,), goal.negated) for ref in refs)
 
 
-def _spoken(acts: Sequence[Act], things: Mapping[str, Refs], way: Sequence[ActTemplate]) -> tuple[Spoken, ...]:
-    """Return the things of acts, the last first; of a table's row, those of its slots."""
-    if things:
-        found = []
-        for name, refs in things.items():
-            uses = [(act.action, at) for act in way for at, (names, _) in enumerate(act.arguments) if names == (name,)]
-            found.append(Spoken(refs, uses[0][0] if uses else "", bool(uses) and uses[0][1] > 0 or name in "pd"))
-        return tuple(reversed(found))
-    return tuple(Spoken((ref,), act.action, at > 0) for act in reversed(acts) for at, ref in enumerate(act.objects))
+def _is_back(known: Knowledge, text: str) -> bool:
+    return all(each.back for each in mentions_in(known, text))
+
+
+def _spoken(
+    acts: Sequence[Act],
+    things: Mapping[str, Refs],
+    way: Sequence[ActTemplate],
+    is_back: Collection[str] = (),
+    named: Mapping[str, Refs] = {},
+) -> tuple[Spoken, ...]:
+    """Return the things of acts, the last first; of a table's row, those of its slots, and then of its classes.
+
+    What a pronoun stood for comes first: the next one stands for the same.
+    """
+    if not things:
+        return tuple(Spoken((ref,), act.action, at > 0) for act in reversed(acts) for at, ref in enumerate(act.objects))
+    found = []
+    for name, refs in things.items():
+        uses = [(act.action, at) for act in way for at, (names, _) in enumerate(act.arguments) if names == (name,)]
+        is_place = (bool(uses) and uses[0][1] > 0) or name in "pd"
+        found.append(Spoken(refs, uses[0][0] if uses else "", is_place and name not in is_back))
+    found.sort(key=lambda each: any(things[name] == each.refs for name in is_back))
+    others = (Spoken(refs, "", True) for refs in dict.fromkeys(named.values()) if refs not in things.values())
+    return (*reversed(found), *others)
 
 
 @lru_cache(maxsize=4096)
@@ -365,6 +398,9 @@ def plain_words(text: str) -> str:
     text = " ".join(table.courtesy.sub(" ", text.lower()).split()).strip(" ,;:.!?-\"")
     while (found := table.openings.match(text)) and found.end():
         text = text[found.end() :].strip(" ,")
+    first, _, rest = text.partition(" ")
+    if first == "go" and rest and is_verb(rest.partition(" ")[0]) and not _WHERE.match(rest):
+        text = rest
     return re.sub(r" +([,;])", r"\1", text)
 
 

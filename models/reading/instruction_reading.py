@@ -25,13 +25,18 @@ MOST_TRIED = 120
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus |,? so (?!that\b)"
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus |, so (?!that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
 _ALTERNATIVE = re.compile(
     r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise|say|preferably|ideally"
     r"|if need be)\b(?: .*)?"
 )
+_CHOICE = re.compile(
+    r",? or,? (?:else|failing that|otherwise|if (?:there is none|need be)|maybe|perhaps),? (?:on |in |at )?"
+    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in |at )?(?=the |a |an )"
+)
+_CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to ")
 _VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
@@ -64,8 +69,8 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         world: where it is to be done; None where only classes matter.
     """
     reader = _Text(ClauseReader(Scene(known, world)))
-    for sentence in _SENTENCES.split(text[:LONGEST].replace("\u2019", "'")):
-        plain = " ".join(sentence.lower().split()).strip(" .!?,;:\"")
+    for sentence in _SENTENCES.split(_CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'"))):
+        plain = _CHOICE.sub(" or ", " ".join(sentence.lower().split()).strip(" .!?,;:\""))
         if plain:
             reader.sentence(plain)
     return reader.reading()
@@ -84,15 +89,16 @@ class _Text:
     def sentence(self, text: str) -> None:
         """Read a sentence; what it says of the order of its acts is kept."""
         self.tried = 0
-        if (whole := self.clauses.read(text, self.spoken, steps=_PARTS.search(text) is None)) is not None:
-            self._add((whole,))
-            return
-        for read in (self._in_order, self._read, self._titled, self._subordinate):
+        for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
             found = read(text, self.spoken)
             if found is not None:
                 self._add(found)
                 return
         self._in_part(text)
+
+    def _whole(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        found = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
+        return (found,) if found else None
 
     def _in_order(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence with `before` or `after`; what is said first may be what a pronoun means."""
@@ -211,6 +217,7 @@ def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
 
 
+_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
 _SUBORDINATE = re.compile(
     r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to|for|at|in) "
     r"(.+?), (.+)"
@@ -219,7 +226,7 @@ _SUBORDINATE = re.compile(
 
 def _main(text: str) -> tuple[str, str] | None:
     """Return the clause of a sentence that says when or why, and what stands behind its comma; None without one."""
-    found = _SUBORDINATE.fullmatch(text)
+    found = _SUBORDINATE.fullmatch(text) or _REASON.fullmatch(text)
     return (found[1], found[2]) if found else None
 
 

@@ -40,6 +40,11 @@ _PLACE = re.compile(
 _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides) (?=\S)")
 _ALL_BEHIND = re.compile(r" (?:all|both|each)$")
 _LISTED = re.compile(r",? (?:and|or|as well as|along with|together with|plus|&)(?: also)? |, ")
+_RELATIVE = re.compile(
+    r" (?:(?:that|which|who) (?!is |are |was |were |lies |stands |sits )[a-z']+.*|(?:that |which )?(?:you|i|we) (?:can|could|have|own|see|find"
+    r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house|home|flat))$"
+)
+_PART_OF = re.compile(r"(.+?) of (?:the|my|your|our|this|that) (.+)")
 _LAMP = re.compile(r"(?:the |my |your |both )?(desk|bedside|nightstand|table|counter|shelf|bookshelf|dresser) (lamps?|lights?)")
 _PACKAGE = re.compile(r" (?:carton|bottle|box|jar|packet|pack|bag|tube|tub|container|set|machine|unit|appliance)$")
 _RELATION = {"in": "INSIDE", "inside": "INSIDE", "from inside": "INSIDE", "out of": "INSIDE"} | {
@@ -75,30 +80,42 @@ class Mention:
 
 
 @lru_cache(maxsize=65_536)
-def mentions_in(known: Knowledge, text: str) -> tuple[Mention, ...]:
-    """Return the things of a noun phrase or of a list of them; none where a part is not understood."""
+def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Mention, ...]:
+    """Return the things of a noun phrase or of a list of them; none where a part is not understood.
+
+    Args:
+        known: the knowledge.
+        text: in small letters.
+        is_inner: whether it is a part of a list, whose last things an `and` joins.
+    """
     text = text.strip(" ,")
     text = text.removeprefix("both ") if " and " in text else text
     if len(text.split()) > _LONGEST * 3:
         return ()
     if (whole := mention_of(known, text)) is not None:
         return (whole,)
-    for found in reversed(list(_LISTED.finditer(text))):
+    joints = list(_LISTED.finditer(text))
+    if joints and not is_inner and not joints[-1][0].strip(" ,"):
+        return ()  # `the fork, faucet` is no list
+    for found in reversed(joints):
         last = mention_of(known, text[found.end() :])
-        before = mentions_in(known, text[: found.start()]) if last else ()
+        before = mentions_in(known, text[: found.start()], True) if last else ()
         if last and before and len(before) < _MOST_LISTED:
             if any(each.places for each in before) and not last.places:
                 return ()  # `the fork on the table and the knife` are of two clauses
             if last.places and not any(each.places for each in before):
                 before = tuple(replace(each, places=last.places) for each in before)
-            return before[:1] if found[0].strip(" ,") == "or" else (*before, last)
+            if found[0].strip(" ,") == "or":
+                first = before[-1]
+                return (*before[:-1], replace(first, classes=(*first.classes, *last.classes)))
+            return (*before, last)
     return ()
 
 
 @lru_cache(maxsize=65_536)
 def mention_of(known: Knowledge, text: str) -> Mention | None:
     """Return the things of one noun phrase; None where it is not understood."""
-    text = text.strip(" ,")
+    text = _RELATIVE.sub("", text.strip(" ,"))
     if not text or len(text.split()) > _LONGEST * 2:
         return None
     if _ANOTHER.fullmatch(text):
@@ -119,6 +136,8 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         return placed
     if classes := _classes(known, rest):
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
+    if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
+        return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
     return _in_room(known, text, rest, count) or _plain(known, text)
 
 

@@ -18,7 +18,11 @@ from hearth.simulation.rules import Rules
 from hearth.simulation.world.states import CLOSED, OPEN
 from hearth.simulation.world.world import World
 
-OPENS, CLOSES, WAITS = "Open", "Close", "Wait"
+OPENS, CLOSES, WAITS, GRABS = "Open", "Close", "Wait", "Grab"
+KEEPS = frozenset({"Read", "LookAt", "Wash", "Rinse", "Wipe", "Scrub", "Touch", "Drink", "SwitchOn", "SwitchOff", "Cut", "Write"})
+"""Acts after which a held thing is still held."""
+
+HANDS = 2
 
 
 class Written(NamedTuple):
@@ -65,12 +69,26 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
     """Return acts without those that were done already, with nothing done to their things since: a brake on repetition."""
     found: list[Act] = []
-    for act in acts:
+    for act in _in_hands(acts):
         same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
         since = found[same + 1 :] if same >= 0 else ()
         if act.action == WAITS or same < 0 or any(_concerns(each, act) for each in since):
             found.append(act)
     return tuple(found)
+
+
+def _in_hands(acts: Sequence[Act]) -> Iterator[Act]:
+    """Yield acts without the grabs for which there is no hand, of things that a later act takes anyhow."""
+    held: list[int | None] = []
+    for at, act in enumerate(acts):
+        nodes = _nodes(act.objects)
+        if act.action == GRABS:
+            if len(held) >= HANDS and any(nodes[:1] == _nodes(each.objects)[:1] for each in acts[at + 1 :]):
+                continue
+            held += [nodes[0]]
+        elif act.action not in KEEPS and nodes:
+            held = [node for node in held if node != nodes[0]]
+        yield act
 
 
 def _is_same(one: Act, other: Act) -> bool:

@@ -18,6 +18,10 @@ NUMBERS = {
 
 _COUNT = "one|two|three|four|five|six|seven|eight|nine|ten|[1-9]|10"
 _SLOT = re.compile(r"\{(\w+)(?::([^{}]+))?\}")
+_ANYTHING = re.compile(r"(?<!\w)\.\+")
+_OF_ONE_CLAUSE = "(?:(?! and |, |; |: | then | but ).)+"
+"""Any words of a pattern are those of one clause."""
+
 _GROUP = re.compile(r"<(\w+)>")
 
 
@@ -121,7 +125,7 @@ def _pattern(text: str, groups: Mapping[str, str]) -> Pattern:
         needs[name] = frozenset(condition.split("|")) if condition else frozenset()
         return rf"(?P<{name}>{_COUNT if name == 'n' else '.+?'})"
 
-    filled = _GROUP.sub(lambda found: groups[found[1]], text)
+    filled = _GROUP.sub(lambda found: groups[found[1]], _ANYTHING.sub(_OF_ONE_CLAUSE, text))
     pattern = re.compile(_SLOT.sub(slot, filled))
     needs.pop("n", None)
     return Pattern(pattern, needs)

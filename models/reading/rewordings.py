@@ -72,6 +72,7 @@ _AFTER_FIRST = re.compile(
 )
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
+_WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _PREPOSITION = re.compile(r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)")
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(
@@ -94,7 +95,7 @@ def rewordings(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 def orders(text: str) -> Iterator[tuple[str, str]]:
     """Yield a sentence as what is done first and what is done later, the likeliest first."""
-    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _BEFORE):
+    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _BEFORE, _WHILE):
         if found := pattern.fullmatch(text):
             yield found["first"].strip(" ,"), found["main"].strip(" ,")
 
