@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -27,6 +27,9 @@ PUT_AWAY = "PutAway"
 
 PUT_TO = "PutTo"
 """The act of the table that puts a thing in or on a place, as is usual for it."""
+
+CONSUME = "Consume"
+"""The act of the table that eats food, and drinks what is a drink alone."""
 
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
@@ -124,8 +127,8 @@ class ClauseReader:
             return found
         if back := _BACKWARD.fullmatch(plain):
             first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
-            if first and other:
-                return first._replace(forbidden=other.acts)
+            if first:
+                return first._replace(forbidden=other.acts if other else ())
         return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
 
     def _placed(self, text: str, spoken: Sequence[Spoken]) -> str:
@@ -199,8 +202,16 @@ class ClauseReader:
                 acts, named = made
                 is_back = {name for name in pattern.needs if slots[name] and _is_back(self.known, slots[name])}
                 goals = tuple(each for goal in request.goal for each in _bound(goal, things, named))
-                return Clause(acts, goals, _spoken(acts, things, way, is_back, named))
+                spoken = _spoken(acts, things, way, is_back, named)
+                return Clause(acts, goals, (*spoken, *self._places(slots.values())))
         return None
+
+    def _places(self, texts: Iterable[str]) -> Iterator[Spoken]:
+        """Yield the furniture in or on which things are said to be."""
+        for mention in (each for text in texts if text for each in mentions_in(self.known, text)):
+            for _, names in mention.places:
+                if refs := self.scene.some(names, 1):
+                    yield Spoken(refs, "", True)
 
     def _things(self, text: str, needs: frozenset[str], action: str, spoken: Sequence[Spoken]) -> Refs:
         found: list[ObjectRef] = []
@@ -288,6 +299,8 @@ class ClauseReader:
                 if act.action == PUT_AWAY:
                     action, place = usual_place(self.scene, objects[0])
                     yield Act(action, (objects[0], *place), text)
+                elif act.action == CONSUME:
+                    yield Act("Eat" if self.known.has(objects[0].name, "EATABLE") else "Drink", objects, text)
                 elif act.action == PUT_TO:
                     yield Act(usual_way(self.known, *objects), objects, text)
                 else:
@@ -378,15 +391,16 @@ def _matches(known: Knowledge, text: str) -> tuple[tuple[Request, Pattern, Mappi
         for pattern in request.patterns:
             match = pattern.pattern.fullmatch(text)
             if match and all(
-                match[name] is None or _may_be(known, match[name], needs) for name, needs in pattern.needs.items()
+                match[name] is None or _may_be(known, match[name], needs, is_one=name == "p")
+                for name, needs in pattern.needs.items()
             ):
                 found.append((request, pattern, match.groupdict("")))
     return tuple(found)
 
 
-def _may_be(known: Knowledge, text: str, needs: frozenset[str]) -> bool:
+def _may_be(known: Knowledge, text: str, needs: frozenset[str], *, is_one: bool) -> bool:
     mentions = mentions_in(known, text)
-    return bool(mentions) and all(
+    return 0 < len(mentions) <= (1 if is_one else len(mentions)) and all(
         each.back or any(fits(known, name, needs) for name in each.classes) for each in mentions
     )
 

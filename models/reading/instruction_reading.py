@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_reader import Act, Clause, ClauseReader, Spoken, plain_words
+from hearth.models.reading.mentions import is_adjective
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
 from hearth.models.reading.scene import Scene
@@ -34,7 +35,8 @@ _ALTERNATIVE = re.compile(
 )
 _CHOICE = re.compile(
     r",? or,? (?:else|failing that|otherwise|if (?:there is none|need be)|maybe|perhaps),? (?:on |in |at )?"
-    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in |at )?(?=the |a |an )"
+    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in |at )?(?=the |a |an )",
+    re.IGNORECASE,
 )
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
@@ -69,8 +71,9 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         world: where it is to be done; None where only classes matter.
     """
     reader = _Text(ClauseReader(Scene(known, world)))
-    for sentence in _SENTENCES.split(_CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'"))):
-        plain = _CHOICE.sub(" or ", " ".join(sentence.lower().split()).strip(" .!?,;:\""))
+    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
+    for sentence in _SENTENCES.split(whole):
+        plain = " ".join(sentence.lower().split()).strip(" .!?,;:\"")
         if plain:
             reader.sentence(plain)
     return reader.reading()
@@ -105,9 +108,10 @@ class _Text:
         for first, later in orders(text):
             main = self._read(later, spoken)
             known = (*_all_spoken(main), *spoken)
-            one = self._read(first, known) or self._read(f"make sure {first}", known)
+            ways = (self._read(each, known) for each in (first, f"make sure {first}"))
+            one = next((each for each in ways if each and any(clause.acts for clause in each)), None)
             two = self._read(later, (*_all_spoken(one), *known)) if one else None
-            if one and two and any(each.acts for each in one):
+            if one and two and any(each.acts for each in two):
                 return (*one, *two)
         return None
 
@@ -174,6 +178,8 @@ class _Text:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
         if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
             return self.clauses.told(text)
+        if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
+            return Clause()
         return self.clauses.named(text)
 
     def _in_part(self, text: str) -> None:

@@ -45,6 +45,7 @@ _RELATIVE = re.compile(
     r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house|home|flat))$"
 )
 _PART_OF = re.compile(r"(.+?) of (?:the|my|your|our|this|that) (.+)")
+_EMPTY_WORDS = ("dirty", "empty", "dusty", "tasty", "pretty", "rusty", "misty", "thirsty", "salty", "fruity", "nasty", "cutty")
 _LAMP = re.compile(r"(?:the |my |your |both )?(desk|bedside|nightstand|table|counter|shelf|bookshelf|dresser) (lamps?|lights?)")
 _PACKAGE = re.compile(r" (?:carton|bottle|box|jar|packet|pack|bag|tube|tub|container|set|machine|unit|appliance)$")
 _RELATION = {"in": "INSIDE", "inside": "INSIDE", "from inside": "INSIDE", "out of": "INSIDE"} | {
@@ -245,14 +246,17 @@ def _plain(known: Knowledge, text: str) -> Mention | None:
     """Return the things of a noun phrase without its first adjective: `the big red cup`."""
     found = re.match(r"((?:(?:the|a|an|some|my|your|our|that|this|all|every|each|\w+ of|one|two|three|four|five|both) )*)"
                      r"([a-z'-]+),? (?=[a-z])", text)  # fmt: skip
-    if not found or not _is_adjective(found[2]):
+    if not found or not is_adjective(found[2]):
         return None
     inner = mention_of(known, f"{found[1]}{text[found.end() :]}")
     return replace(inner, words=text) if inner and not inner.back else None
 
 
 @lru_cache(maxsize=65_536)
-def _is_adjective(word: str) -> bool:
+def is_adjective(word: str) -> bool:
+    """Return whether a word is an adjective, or a participle, and no number."""
+    if re.fullmatch(r".*(?:teen|ty|hundred|thousand|million|eleven|twelve|dozen|zero)s?", word) and word not in _EMPTY_WORDS:
+        return False  # a number is no quality
     kinds = lemmas(word)
     if "ADJ" in kinds:
         return True

@@ -28,6 +28,7 @@ _PASSIVE = (
     re.compile(r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
     re.compile(r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?|deserves?) (?:some )?(?P<verb>[a-z]+ing)(?P<rest> .+)?"),
+    re.compile(r"(?P<np>.+?) (?:is|are) what (?:needs?|wants?) (?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
 )  # fmt: skip
 _GIVEN = re.compile(
@@ -39,7 +40,7 @@ _NEEDS_ONE = re.compile(
     r"(?:good |quick |proper |nice |little |thorough )*(?P<verb>[a-z]+)"
 )
 _LIGHT = re.compile(
-    r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another|some|the) (?:good |quick |proper |nice |little |long |short "
+    r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little |long |short "
     r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
 )
 _SPENT = re.compile(r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>[a-z]+ing)\b(?P<rest> .+)?")
@@ -47,7 +48,7 @@ _SPENT_IN = re.compile(
     r"spend (?:some |a |the )?(?:while|time|bit|moment|evening|hour|minute|afternoon)? ?(?P<place>(?:in|on|at) .+?) (?P<verb>[a-z]+ing)"
     r"(?P<rest> .+)?"
 )
-_TOOL_FIRST = re.compile(r"(?:use|using|take|get|grab|with) (?P<np>.+?)(?: to|,| and) (?P<clause>[a-z]+(?: .+)?)")
+_TOOL_FIRST = re.compile(r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,| and) (?P<clause>[a-z]+(?: .+)?)")
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
 _BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
@@ -138,6 +139,7 @@ def _tool(known: Knowledge, text: str) -> Iterator[Clauses]:
     if (found := _TOOL_LAST.fullmatch(text)) and _is_thing(known, found["np"]):
         yield (f"grab {found['np']}", found["clause"])
         yield (f"{found['clause']} on {found['np']}",)
+        yield (found["clause"], f"add {found['np']}")
     if found := _BY.fullmatch(text):
         yield (found["clause"],)
 
@@ -177,7 +179,7 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _light, _passive, _tool, _two, _with_state, _without_object,
+    _passive, _tool, _light, _two, _with_state, _without_object,
 )  # fmt: skip
 
 

@@ -24,13 +24,15 @@ Refs = tuple[ObjectRef, ...]
 
 @lru_cache(maxsize=65_536)
 def fits(known: Knowledge, name: str, needs: frozenset[str]) -> bool:
-    """Return whether a class has one of some properties, or is of one of some kinds or classes."""
+    """Return whether a class has one of some properties, or is of one of some kinds or classes; of none after a `!`."""
     if not needs:
         return True
     thing = known.objects.get(name)
     if thing is None:
         return False
     kinds = {name, *known.same_class(name)[:1], *known.ancestors(name)}
+    if any(known.has(name, need[1:]) or need[1:] in kinds for need in needs if need[0] == "!"):
+        return False
     return not needs.isdisjoint(kinds) or any(known.has(name, need) for need in needs) or _is_room(known, name, needs)
 
 
