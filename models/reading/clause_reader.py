@@ -28,6 +28,9 @@ PUT_AWAY = "PutAway"
 PUT_TO = "PutTo"
 """The act of the table that puts a thing in or on a place, as is usual for it."""
 
+PUT_NEAR = "PutNear"
+"""The act of the table that puts a thing on what another stands on, or else carries it there."""
+
 CONSUME = "Consume"
 """The act of the table that eats food, and drinks what is a drink alone."""
 
@@ -164,8 +167,8 @@ class ClauseReader:
         found = []
         for name in things_in(self.known, text):
             if refs := self.scene.some((name,), 1):
-                found.append(Spoken(refs, ""))
-        return Clause(spoken=tuple(reversed(found)))
+                found.append(Spoken(refs, "", bool(found)))
+        return Clause(spoken=tuple(found))
 
     def named(self, text: str) -> Clause | None:
         """Return a part that only names things, of which the next may say more; None where it is no name."""
@@ -269,6 +272,10 @@ class ClauseReader:
     def _argument(
         self, names: tuple[str, ...], many: int, things: Mapping[str, Refs], named: dict[str, Refs]
     ) -> Refs:
+        if "/" in names[0]:
+            name, _, slot = names[0].partition("/")
+            rooms = tuple(ref.name for ref in things.get(slot, ()))
+            return self.scene.things(Mention(name, (name,), 1, (("INSIDE", rooms),)), frozenset())
         if names[0].endswith("@"):
             return self.scene.contents(things.get(names[0][0], ()))
         if is_slot(names[0]):
@@ -299,6 +306,13 @@ class ClauseReader:
                 if act.action == PUT_AWAY:
                     action, place = usual_place(self.scene, objects[0])
                     yield Act(action, (objects[0], *place), text)
+                elif act.action == PUT_NEAR:
+                    place = self.scene.support(objects[1])
+                    if place:
+                        yield Act("PutBack", (objects[0], *place), text)
+                    else:
+                        yield Act("Grab", objects[:1], text)
+                        yield Act("Walk", objects[1:], text)
                 elif act.action == CONSUME:
                     yield Act("Eat" if self.known.has(objects[0].name, "EATABLE") else "Drink", objects, text)
                 elif act.action == PUT_TO:

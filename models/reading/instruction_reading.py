@@ -12,6 +12,7 @@ from hearth.models.reading.mentions import is_adjective
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
 from hearth.models.reading.scene import Scene
+from hearth.models.reading.spelling import spelled
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
@@ -73,7 +74,7 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
     reader = _Text(ClauseReader(Scene(known, world)))
     whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
     for sentence in _SENTENCES.split(whole):
-        plain = " ".join(sentence.lower().split()).strip(" .!?,;:\"")
+        plain = spelled(known, " ".join(sentence.lower().split()).strip(" .!?,;:\""))
         if plain:
             reader.sentence(plain)
     return reader.reading()

@@ -121,8 +121,8 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         return None
     if _ANOTHER.fullmatch(text):
         return Mention(text, back=True, another=True)
-    if text == "everything":
-        return Mention(text, words().things["device"], EVERY, is_group=True)
+    if text.startswith("everything"):
+        text = f"all devices{text.removeprefix('everything')}"
     if _PRONOUN.fullmatch(text):
         return Mention(text, count=SEVERAL, back=True)
     if found := _EXCEPT.search(text):
@@ -219,6 +219,8 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
         if place is None or place.back:
             continue
         relation = _RELATION.get(found[1], "")
+        if known.is_room(classes[0]) and not known.is_room(place.classes[0]):
+            continue
         return Mention(text, classes, number, ((relation, place.classes), *place.places), is_group=is_group)
     return None
 
@@ -248,6 +250,8 @@ def _plain(known: Knowledge, text: str) -> Mention | None:
                      r"([a-z'-]+),? (?=[a-z])", text)  # fmt: skip
     if not found or not is_adjective(found[2]):
         return None
+    if not found[1] and _DETERMINERS.match(text[found.end() :]):
+        return None  # `warm the milk` asks for something
     inner = mention_of(known, f"{found[1]}{text[found.end() :]}")
     return replace(inner, words=text) if inner and not inner.back else None
 

@@ -15,6 +15,7 @@ from hearth.schemas.program import ObjectRef, Program, Step
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.goals import Progress
 from hearth.simulation.rules import Rules
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import CLOSED, OPEN
 from hearth.simulation.world.world import World
 
@@ -23,6 +24,9 @@ KEEPS = frozenset({"Read", "LookAt", "Wash", "Rinse", "Wipe", "Scrub", "Touch", 
 """Acts after which a held thing is still held."""
 
 HANDS = 2
+PUTS = "PutBack"
+PUT_DOWN = ("kitchen_counter", "dining_table", "kitchen_table", "table", "coffee_table", "desk")
+"""Furniture on which a thing is put down to have a hand free."""
 
 
 class Written(NamedTuple):
@@ -54,16 +58,71 @@ def sketch_of(reading: Reading) -> Steps:
 
 
 def write_program(reading: Reading, world: World, rules: Rules) -> Written:
-    """Return the program that does what was read, planned by the repairs, without what was forbidden."""
+    """Return the program that does what was read, planned act by act by the repairs, without what was forbidden.
+
+    Should the whole not run as its parts did, it is planned as a whole.
+    """
     acts = _wanted(reading.acts)
-    steps = tuple(Step(act.action, act.objects) for act in acts)
-    done = complete(steps, world, world.home.knowledge, rules)
-    execution, sources = _tidied(done, reading, world, rules)
-    left_out = tuple(
-        (act, failure) for step, failure in done.left_out for act in _acts_of(step, acts)[:1] if not act.optional
-    )
-    goal = Goal.of(*reading.goals)
-    return Written(acts, execution, sources, left_out, _unmet(goal, execution))
+    planned = _planned(acts, world, rules)
+    execution = run(world, Program(steps=planned.steps), rules)
+    if execution.failure is not None:
+        planned = _planned_whole(acts, world, rules)
+        execution = run(world, Program(steps=planned.steps), rules)
+    execution, sources = _tidied(execution, planned.sources, reading, world, rules)
+    left_out = tuple((acts[number], failure) for number, failure in planned.left_out if not acts[number].optional)
+    return Written(acts, execution, sources, left_out, _unmet(Goal.of(*reading.goals), execution))
+
+
+class _Plan(NamedTuple):
+    """Steps, the number of the act that each does or -1, and the acts that cannot be done."""
+
+    steps: Steps
+    sources: tuple[int, ...]
+    left_out: tuple[tuple[int, Failure], ...]
+
+
+def _planned(acts: Sequence[Act], world: World, rules: Rules) -> _Plan:
+    """Return a plan made act by act, each from the world in which the one before it leaves the home."""
+    steps: list[Step] = []
+    sources: list[int] = []
+    left_out: list[tuple[int, Failure]] = []
+    for number, act in enumerate(acts):
+        done = complete((Step(act.action, act.objects),), world, world.home.knowledge, rules)
+        if done.left_out and done.left_out[0][1].code is Code.NO_FREE_HAND:
+            done = _with_hands(act, world, rules) or done
+        if done.left_out:
+            left_out.append((number, done.left_out[0][1]))
+            continue
+        steps += done.execution.program.steps
+        sources += [number if source >= 0 else -1 for source in done.sources]
+        world = done.execution.final
+    return _Plan(tuple(steps), tuple(sources), tuple(left_out))
+
+
+def _with_hands(act: Act, world: World, rules: Rules) -> Completion | None:
+    """Return an act after a held thing was put down; None where that does not help."""
+    home, agent = world.home, world.agents[0]
+    held = [i for i in range(len(home)) if agent.held >> i & 1]
+    held.sort(key=lambda i: home.ids[i] not in _nodes(act.objects))
+    surfaces = [i for name in PUT_DOWN for i in indices(home.instances(name))]
+    for thing in held:
+        for surface in surfaces[:2]:
+            down = Step(PUTS, (_ref(world, thing), _ref(world, surface)))
+            done = complete((down, Step(act.action, act.objects)), world, home.knowledge, rules)
+            if not done.left_out:
+                return done._replace(sources=tuple(source - 1 if source > 0 else -1 for source in done.sources))
+    return None
+
+
+def _ref(world: World, node: int) -> ObjectRef:
+    return ObjectRef(world.home.classes[node], node + 1, world.home.ids[node])
+
+
+def _planned_whole(acts: Sequence[Act], world: World, rules: Rules) -> _Plan:
+    done = complete(tuple(Step(act.action, act.objects) for act in acts), world, world.home.knowledge, rules)
+    left_out = [(number, failure) for step, failure in done.left_out
+                for number in [n for n, act in enumerate(acts) if act.action == step.action][:1]]  # fmt: skip
+    return _Plan(done.execution.program.steps, done.sources, tuple(left_out))
 
 
 def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
@@ -100,10 +159,6 @@ def _concerns(one: Act, other: Act) -> bool:
     return bool({ref.node for ref in one.objects} & {ref.node for ref in other.objects}) or not other.objects
 
 
-def _acts_of(step: Step, acts: Sequence[Act]) -> list[Act]:
-    return [act for act in acts if act.action == step.action and _nodes(act.objects) == _nodes(step.objects)]
-
-
 def _nodes(objects: Sequence[ObjectRef]) -> tuple[int | None, ...]:
     return tuple(ref.node for ref in objects)
 
@@ -112,11 +167,12 @@ def _unmet(goal: Goal, execution: Execution) -> Goal:
     return Progress.at(goal, execution.final).unmet() if goal.counts else goal
 
 
-def _tidied(done: Completion, reading: Reading, world: World, rules: Rules) -> tuple[Execution, tuple[int, ...]]:
+def _tidied(
+    execution: Execution, sources: tuple[int, ...], reading: Reading, world: World, rules: Rules
+) -> tuple[Execution, tuple[int, ...]]:
     """Return the run of a program that also closes what it opened only to reach what is in it."""
-    execution, sources = done.execution, done.sources
     forbidden = {(act.action, ref.node) for act in reading.forbidden for ref in act.objects}
-    for at, node in reversed(list(_opened(done))):
+    for at, node in reversed(list(_opened(execution, sources))):
         if (CLOSES, node) in forbidden:
             continue
         found = _closed(execution, sources, at, node, world, rules)
@@ -125,17 +181,17 @@ def _tidied(done: Completion, reading: Reading, world: World, rules: Rules) -> t
     return execution, sources
 
 
-def _opened(done: Completion) -> Iterator[tuple[int, int]]:
+def _opened(execution: Execution, sources: Sequence[int]) -> Iterator[tuple[int, int]]:
     """Yield the furniture that a repair opened and nothing closes: the number of the step, and the node."""
-    steps = done.execution.program.steps
-    home = done.execution.final.home
-    for at, (step, source) in enumerate(zip(steps, done.sources, strict=True)):
+    steps = execution.program.steps
+    home = execution.final.home
+    for at, (step, source) in enumerate(zip(steps, sources, strict=True)):
         if step.action != OPENS or source >= 0 or not step.objects or step.objects[0].node is None:
             continue
         node = step.objects[0].node
         index = home.index[node]
         later = any(each.action in (OPENS, CLOSES) and each.objects[0].node == node for each in steps[at + 1 :])
-        is_open = done.execution.final.states[OPEN] >> index & 1 and not home.doors >> index & 1
+        is_open = execution.final.states[OPEN] >> index & 1 and not home.doors >> index & 1
         if is_open and not later:
             yield at, node
 

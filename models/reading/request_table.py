@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -169,8 +169,11 @@ def number_in(text: str) -> int:
     return NUMBERS.get(text, 0) or (int(text) if text.isascii() and text.isdigit() and len(text) < 3 else 0)
 
 
-def actions_named() -> Iterator[str]:
-    """Yield the actions that the table names."""
-    for request in requests():
-        for way in request.ways:
-            yield from (act.action for act in way)
+@cache
+def table_words() -> frozenset[str]:
+    """Return the words of which the patterns and the nouns of the tables are made."""
+    data: dict[str, Any] = packaged("hearth.kb.language", "requests.yaml")
+    texts = [text for row in data["requests"] for text in row["say"]]
+    texts += [text for group in data["words"].values() for text in group]
+    plain = (re.sub(r"\{[^{}]*\}|<\w+>|\\\\.", " ", text) for text in (*texts, *words().things))
+    return frozenset(word for text in plain for word in re.findall(r"[a-z]{2,}", text))

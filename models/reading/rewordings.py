@@ -64,16 +64,20 @@ _BUT_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and|only)(?: please)? (?P<first
 _THE_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and) (?:first|before that|beforehand),? (?P<first>.+)")
 _AFTER = re.compile(
     r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
-    r" (?:(?:you|you've|you have|you are|you're|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+)"
+    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+)"
 )
 _AFTER_FIRST = re.compile(
     r"(?:only |right |just )?(?:after|once|when|as soon as|upon|having)"
-    r" (?:(?:you|you've|you have|you are|you're|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+?), "
+    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+?), "
     r"(?:then |only then )?(?P<main>.+)"
 )
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
+_ROOM_FIRST = re.compile(
+    r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room|[a-z]+ bedroom)),? "
+    r"(?P<to>on|in|onto|into|on top of|inside|next to) (?P<place>.+)"
+)
 _PREPOSITION = re.compile(r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)")
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(
@@ -123,10 +127,10 @@ def _light(known: Knowledge, text: str) -> Iterator[Clauses]:
     if (found := _LIGHT.fullmatch(text)) and is_verb(found["verb"]):
         rest = re.sub(r"^ of ", " ", found["rest"] or "")
         yield from ((f"{lemma}{rest}",) for lemma in _verbs(found["verb"]))
-    if found := _SPENT.fullmatch(text):
-        yield from ((f"{lemma}{found['rest'] or ''}",) for lemma in _verbs(found["verb"]))
     if found := _SPENT_IN.fullmatch(text):
         yield from ((f"{lemma}{found['rest'] or ''} {found['place']}",) for lemma in _verbs(found["verb"]))
+    if found := _SPENT.fullmatch(text):
+        yield from ((f"{lemma}{found['rest'] or ''}",) for lemma in _verbs(found["verb"]))
 
 
 def _tool(known: Knowledge, text: str) -> Iterator[Clauses]:
@@ -178,8 +182,14 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"{first} it{space}{rest}",)
 
 
+def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `put it on the table in the kitchen` of `put it in the kitchen on the table`."""
+    if (found := _ROOM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
+        yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
+
+
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _tool, _light, _two, _with_state, _without_object,
+    _passive, _tool, _light, _two, _room_last, _with_state, _without_object,
 )  # fmt: skip
 
 

@@ -97,6 +97,13 @@ class Scene:
         nodes = [i for i in indices(self.world.home.instances(refs[0].name)) if self.world.home.ids[i] not in taken]
         return tuple(map(self._ref, self._ordered(nodes, "")[:1]))
 
+    def support(self, ref: ObjectRef) -> Refs:
+        """Return the furniture that a thing stands on; none where it is on nothing, and without a home."""
+        if self.world is None:
+            return ()
+        surfaces = self.world.home.properties["SURFACES"] & ~self.world.home.properties["GRABBABLE"]
+        return tuple(self._ref(i) for i in indices(edge_rows.on(self.world, self.index(ref)) & surfaces))[:1]
+
     def contents(self, refs: Refs) -> Refs:
         """Return the movable things in some furniture; none without a home."""
         if self.world is None:

@@ -7,24 +7,22 @@ from hearth.models.reading.scene import Refs, Scene
 from hearth.schemas.program import ObjectRef
 
 _ACTIONS = {"IN": "PutIn", "ON": "PutBack"}
-_NEVER = frozenset({"floor", "trashcan", "garbage_can", "bag", "basket", "box", "microwave", "oven", "stove", "toaster"})
+_NEVER = frozenset({"floor", "sink", "dishwasher", "washing_machine", "bed", "trashcan", "garbage_can", "bag", "basket", "box", "microwave", "oven", "stove", "toaster"})
 
 
 def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
     """Return the act by which a thing is put away, and its place; no act where the home has no place for it.
 
-    Things are put into furniture rather than on it, each where it is most usual.
+    Things are put where it is most usual, and into furniture rather than on it.
     """
     places = [
-        (each.relation != "IN", -each.weight, n, each)
+        (-each.weight - 2 * (each.relation == "IN"), -each.weight, n, each)
         for n, each in enumerate(scene.known.placements(thing.name))
         if each.relation in _ACTIONS and each.destination not in _NEVER and _is_furniture(scene, each.destination)
     ]
-    for is_on, weight, _, each in sorted(places):
-        if not is_on and -weight < 3 and any(not other[0] is False and -other[1] > 3 for other in places):
-            continue
+    for _, _, _, each in sorted(places):
         refs = scene.some((each.destination,), 1)
-        if refs:
+        if refs and refs[0].name not in _NEVER:
             return _ACTIONS[each.relation], refs
     return "", ()
 
