@@ -48,7 +48,7 @@ _NEGATION = re.compile(
 _WHERE = re.compile(r"(?:to|on|in|into|near|by|over|up|out|and|back|home|online|outside|through|around|for|down|inside|next|stand|close to)\b")
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
-_BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't|but do not|and don't|but never|as long as you (?:don't|do not)"
+_BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget)|but do not(?! forget)|and don't(?! forget)|but never|as long as you (?:don't|do not)"
     r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
 )
 

@@ -123,7 +123,9 @@ class _Text:
             return None
         told = self.clauses.told(found["title"])
         read = self._read(found["rest"], (*told.spoken, *spoken))
-        return (told, *read) if read and any(each.acts for each in read) else None
+        if read and not any(each.acts for each in read):
+            return self._read(found["title"], spoken)  # `get dressed: pants and a shirt`
+        return (told, *read) if read else None
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""

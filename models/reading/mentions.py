@@ -129,6 +129,8 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         left = mention_of(known, text[: found.start()])
         others = mentions_in(known, re.sub(r"^the one\b", left.words if left else "", text[found.end() :]))
         return replace(left, words=text, others=others) if left and others else None
+    if re.search(r"[,;:]| and ", text):
+        return None
     rest, count = _counted(text)
     if (lamp := _LAMP.fullmatch(rest)) and (place := words().things.get(lamp[1]) or _classes(known, lamp[1])):
         number = EVERY if count == EVERY else SEVERAL if lamp[2].endswith("s") else count or 1

@@ -19,7 +19,7 @@ NUMBERS = {
 _COUNT = "one|two|three|four|five|six|seven|eight|nine|ten|[1-9]|10"
 _SLOT = re.compile(r"\{(\w+)(?::([^{}]+))?\}")
 _ANYTHING = re.compile(r"(?<!\w)\.\+")
-_OF_ONE_CLAUSE = "(?:(?! and |, |; |: | then | but ).)+"
+_OF_ONE_CLAUSE = "(?:(?!(?: |(?<= ))(?:and|then|but) |[,;:] ).)+"
 """Any words of a pattern are those of one clause."""
 
 _GROUP = re.compile(r"<(\w+)>")

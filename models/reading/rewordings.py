@@ -66,6 +66,7 @@ _AFTER = re.compile(
     r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
     r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+)"
 )
+_AFTER_PLAIN = re.compile(r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)")
 _AFTER_FIRST = re.compile(
     r"(?:only |right |just )?(?:after|once|when|as soon as|upon|having)"
     r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+?), "
@@ -100,7 +101,7 @@ def rewordings(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 def orders(text: str) -> Iterator[tuple[str, str]]:
     """Yield a sentence as what is done first and what is done later, the likeliest first."""
-    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _BEFORE, _WHILE):
+    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _AFTER_PLAIN, _BEFORE, _WHILE):
         if found := pattern.fullmatch(text):
             yield found["first"].strip(" ,"), found["main"].strip(" ,")
 

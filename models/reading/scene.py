@@ -19,6 +19,9 @@ MOST = 40
 MOST_CARRIED = 3
 """Things that a plural without a number means, where they are carried."""
 
+MOST_HELD = 2
+"""Things that a plural without a number means, where they are only taken: there are two hands."""
+
 Refs = tuple[ObjectRef, ...]
 
 
@@ -70,7 +73,7 @@ class Scene:
         else:
             ordered = self._to_change(ordered, action)
             if mention.count == SEVERAL and self._is_carried(ordered):
-                ordered = ordered[:MOST_CARRIED]
+                ordered = ordered[: MOST_CARRIED if action != "Grab" else MOST_HELD]
         return tuple(map(self._ref, ordered)) if len(ordered) <= MOST else ()
 
     def _to_change(self, nodes: list[int], action: str) -> list[int]:
