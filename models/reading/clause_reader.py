@@ -124,7 +124,7 @@ class ClauseReader:
             return None
         if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
             found = self._asked(negated[1], spoken, steps)
-            return Clause(forbidden=found.acts) if found else None
+            return Clause(forbidden=found.acts, spoken=found.spoken) if found else None
         plain = self._placed(plain, spoken)
         if (found := self._asked(plain, spoken, steps)) is not None:
             return found
@@ -177,11 +177,17 @@ class ClauseReader:
         return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None
 
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
+        lacking: dict[str, str] = {}
         for variant in variants(text):
             for request, pattern, slots in _matches(self.known, variant):
+                before = len(self.missing)
+                if lacking and {**slots} != lacking:
+                    continue  # the home lacks a thing: the words do not mean others for that
                 found = self._meant(request, pattern, slots, text, spoken)
                 if found is not None:
                     return found
+                if len(self.missing) > before:
+                    lacking = {**slots}
         return self._by_steps(text, spoken) if steps else None
 
     def _meant(
@@ -318,7 +324,14 @@ class ClauseReader:
                 elif act.action == PUT_TO:
                     yield Act(usual_way(self.known, *objects), objects, text)
                 else:
-                    yield Act(act.action, objects, text, act.optional)
+                    yield Act(self._fitting(act.action, objects), objects, text, act.optional)
+
+    def _fitting(self, action: str, objects: Refs) -> str:
+        """Return an act, or that of putting in where nothing is put on a place, as a sink."""
+        is_on = action == "PutBack" and len(objects) > 1
+        if is_on and not self.known.affords("PutBack", 1, objects[1].name):
+            return "PutIn" if self.known.affords("PutIn", 1, objects[1].name) else action
+        return action
 
     def _by_steps(self, text: str, spoken: Sequence[Spoken]) -> Clause | None:
         """Return what the reader of programs in words understands; None where it understands nothing."""

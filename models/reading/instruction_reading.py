@@ -40,8 +40,16 @@ _CHOICE = re.compile(
     re.IGNORECASE,
 )
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
+_CONTRACTED = re.compile(
+    r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open|closed|shut|on|off|running|dirty|empty|full"
+    r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
+)
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to ")
+_WISH = re.compile(
+    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work|know|hear|listen|be|cook|feel"
+    r"|write|sit|lie|play|enjoy|study)\b"
+)
 _VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
 
 
@@ -74,7 +82,7 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
     reader = _Text(ClauseReader(Scene(known, world)))
     whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
     for sentence in _SENTENCES.split(whole):
-        plain = spelled(known, " ".join(sentence.lower().split()).strip(" .!?,;:\""))
+        plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(" .!?,;:\"")))
         if plain:
             reader.sentence(plain)
     return reader.reading()
@@ -241,7 +249,7 @@ def _main(text: str) -> tuple[str, str] | None:
 
 def is_aside(text: str) -> bool:
     """Return whether a clause asks for nothing."""
-    if _PARTS.search(text) or _STATEMENT.match(text):
+    if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
         return False
     return words().asides.fullmatch(text) is not None
 

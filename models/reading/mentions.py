@@ -20,14 +20,18 @@ _COUNT = re.compile(
     r"(?:the |my |your |our |these |those )?(a couple of|a pair of|both|one|two|three|four|five|six|seven|eight|nine|ten"
     r"|\d{1,2}|another)(?: of)?(?: the| my| your| our| these| those)? (?=\S)"
 )
+_SLICES = re.compile(r"(?:[a-z]+|\d+) (?:slices|pieces|bits|drops|spoonfuls|spoons|cans|bottles|cups|glasses|bites|sips) of (?=[a-z]+$)")
+"""Parts of one thing: two slices of bread are of one loaf."""
+
 _FEW = re.compile(r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) ")
 _DETERMINERS = re.compile(
-    r"(?:(?:the|a|an|some|any|my|your|his|her|our|their|its|this|that|these|those|one of|a bit of|a little|a piece of"
-    r"|a slice of|the rest of|the whole|whole|entire|other|same|which|what)\s+)+"
+    r"(?:(?:a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of|slices of|pieces of"
+    r"|the rest of|one of|a little|the whole|the|a|an|some|any|my|your|his|her|our|their|its|this|that|these|those|whole|entire"
+    r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
     r"(?:it|them|they|that|this|those|these|one|ones|both|both of them|all of them|all of it|each|each of them|each one"
-    r"|the (?:first|second|other|last)(?: one)?|that one|this one|the same(?: one)?|the (?:two|three|four) of them"
+    r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
 _ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
@@ -151,6 +155,8 @@ def _counted(text: str) -> tuple[str, int | None]:
     if found := _EVERY.match(text):
         rest = text[found.end() :]
         return (rest, number_in(rest.split()[0])) if rest and number_in(rest.split()[0]) > 1 else (rest, EVERY)
+    if found := _SLICES.match(text):
+        return text[found.end() :], None
     if (found := _COUNT.match(text)) and number_in(found[1]):
         return text[found.end() :], number_in(found[1])
     if found := _FEW.match(text):

@@ -43,12 +43,13 @@ _LIGHT = re.compile(
     r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little |long |short "
     r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
 )
-_SPENT = re.compile(r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>[a-z]+ing)\b(?P<rest> .+)?")
+_SPENT = re.compile(r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>(?!evening|morning)[a-z]+ing)\b(?P<rest> .+)?")
+_DONE = re.compile(r"(?:do|get on with|start|finish) (?:some|the|a bit of|a little|your) (?P<verb>[a-z]+ing)\b(?P<rest> .+)?")
 _SPENT_IN = re.compile(
     r"spend (?:some |a |the )?(?:while|time|bit|moment|evening|hour|minute|afternoon)? ?(?P<place>(?:in|on|at) .+?) (?P<verb>[a-z]+ing)"
     r"(?P<rest> .+)?"
 )
-_TOOL_FIRST = re.compile(r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,| and) (?P<clause>[a-z]+(?: .+)?)")
+_TOOL_FIRST = re.compile(r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)")
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
 _BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
@@ -128,6 +129,8 @@ def _light(known: Knowledge, text: str) -> Iterator[Clauses]:
     if (found := _LIGHT.fullmatch(text)) and is_verb(found["verb"]):
         rest = re.sub(r"^ of ", " ", found["rest"] or "")
         yield from ((f"{lemma}{rest}",) for lemma in _verbs(found["verb"]))
+    if found := _DONE.fullmatch(text):
+        yield from ((f"{lemma}{found['rest'] or ''}",) for lemma in _verbs(found["verb"]))
     if found := _SPENT_IN.fullmatch(text):
         yield from ((f"{lemma}{found['rest'] or ''} {found['place']}",) for lemma in _verbs(found["verb"]))
     if found := _SPENT.fullmatch(text):

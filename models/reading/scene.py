@@ -131,8 +131,8 @@ class Scene:
                 found += [i for i in nodes if not is_placed or self._is_at(i, mention)]
                 if not is_all and len(found) >= max(mention.count, 1):
                     return found
-                if not is_all and not mention.is_group:
-                    found = []  # cups are not made up of one cup and one mug
+                if mention.count <= 0 and not mention.is_group:
+                    found = []  # all cups are not all mugs, too
             if found:
                 return found
             if is_placed and any(self._is_room_place(names) for _, names in mention.places):
