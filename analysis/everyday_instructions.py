@@ -1,8 +1,9 @@
 """Everyday instructions with goals: how many a model reaches, in homes in which they do not hold at the start.
 
 A row has an `instruction`, `wordings` of the same, `homes` in which it can be done, and a `goal` (see
-`simulation.goal_text`). Each is asked in three of its homes, by action set 3. So that doing nothing does not win, what
-the goal wants is undone in the home first: what is to be closed is opened, and what is to lie somewhere is moved.
+`simulation.goal_text`). Each is asked in three of its homes, by action set 3. So that doing nothing does not win,
+the goal is undone in the home first: a door that is to be closed is opened, and a thing that is to lie somewhere is
+moved.
 """
 
 from __future__ import annotations
@@ -232,5 +233,6 @@ def figures(found: Sequence[Tried]) -> Figures:
     return Figures(
         len(texts), len(found), sum(each.reached for each in found) / number,
         sum(map(all, texts.values())) / max(len(texts), 1), sum(each.runs for each in found) / number,
-        sum(each.repeats for each in found), held, held / number, times[len(times) // 2], times[(len(times) * 99) // 100],
+        sum(each.repeats for each in found), held, held / number, times[len(times) // 2],
+        times[(len(times) * 99) // 100],
     )  # fmt: skip

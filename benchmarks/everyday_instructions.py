@@ -1,4 +1,4 @@
-"""python benchmarks/everyday_instructions.py FILE [--model NAME] [--show N]: how many everyday instructions are reached.
+"""python benchmarks/everyday_instructions.py FILE [--model NAME] [--show N]: everyday instructions that are reached.
 
 FILE has JSON lines of `id`, `instruction`, `wordings`, `homes` and `goal`, as `tests/models/everyday.jsonl`.
 `hearth.analysis.everyday_instructions` says how they are tried. Rows without a goal ask for what no home can do: they
@@ -42,7 +42,8 @@ def _warm(home: str):
 def _line(found: list[Tried]) -> str:
     one = figures(found)
     return (
-        f"{one.asked} in 3 homes each; reached {one.reached:.1%} of {one.tried}, in every home {one.reached_everywhere:.1%}; "
+        f"{one.asked} in 3 homes each; reached {one.reached:.1%} of {one.tried}, "
+        f"in every home {one.reached_everywhere:.1%}; "
         f"run {one.runs:.1%}; repeat themselves {one.repeats}; held at the start {one.held}; "
         f"{one.milliseconds:.0f} ms (99 %: {one.slowest:.0f} ms)"
     )

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
-from typing import NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
 from hearth.kb.language.noun_phrases import things_in
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
+from hearth.models.reading.clause_matches import matches, plain_words, variants
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
-from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, requests, words
+from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
 from hearth.models.reading.rewordings import rewordings
 from hearth.models.reading.scene import Refs, Scene, fits
+from hearth.models.reading.spoken_things import Act, Clause, Spoken, bound, spoken_of, together
 from hearth.models.reading.usual_places import usual_place, usual_way
-from hearth.schemas.literals import Literal, Name
 from hearth.schemas.program import ObjectRef
 
 PUT_AWAY = "PutAway"
@@ -29,7 +27,7 @@ PUT_TO = "PutTo"
 """The act of the table that puts a thing in or on a place, as is usual for it."""
 
 PUT_NEAR = "PutNear"
-"""The act of the table that puts a thing on what another stands on, or else carries it there."""
+"""The act of the table that puts a thing on the furniture of another, or else carries it there."""
 
 CONSUME = "Consume"
 """The act of the table that eats food, and drinks what is a drink alone."""
@@ -45,58 +43,13 @@ _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
-_WHERE = re.compile(r"(?:to|on|in|into|near|by|over|up|out|and|back|home|online|outside|through|around|for|down|inside|next|stand|close to)\b")
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
-_BACKWARD = re.compile(r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget)|but do not(?! forget)|and don't(?! forget)|but never|as long as you (?:don't|do not)"
+_BACKWARD = re.compile(
+    r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget)|but do not(?! forget)"
+    r"|and don't(?! forget)|but never|as long as you (?:don't|do not)"
     r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
 )
-
-
-class Act(NamedTuple):
-    """Something to do.
-
-    Attributes:
-        action: its name.
-        objects: its things.
-        words: the clause that asks for it.
-        optional: whether it is left out where it cannot be done.
-    """
-
-    action: str
-    objects: Refs
-    words: str
-    optional: bool = False
-
-
-class Spoken(NamedTuple):
-    """Things that were spoken of together.
-
-    Attributes:
-        refs: the things.
-        action: what was done with them first.
-        is_place: whether they were the place of others.
-    """
-
-    refs: Refs
-    action: str
-    is_place: bool = False
-
-
-class Clause(NamedTuple):
-    """A clause that is understood.
-
-    Attributes:
-        acts: that it asks for.
-        goals: what is to hold at the end besides.
-        spoken: its things, the last first.
-        forbidden: acts that are not to be done.
-    """
-
-    acts: tuple[Act, ...] = ()
-    goals: tuple[Literal[Name], ...] = ()
-    spoken: tuple[Spoken, ...] = ()
-    forbidden: tuple[Act, ...] = ()
 
 
 class ClauseReader:
@@ -179,7 +132,7 @@ class ClauseReader:
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
         lacking: dict[str, str] = {}
         for variant in variants(text):
-            for request, pattern, slots in _matches(self.known, variant):
+            for request, pattern, slots in matches(self.known, variant):
                 before = len(self.missing)
                 if lacking and {**slots} != lacking:
                     continue  # the home lacks a thing: the words do not mean others for that
@@ -210,8 +163,8 @@ class ClauseReader:
             if made is not None:
                 acts, named = made
                 is_back = {name for name in pattern.needs if slots[name] and _is_back(self.known, slots[name])}
-                goals = tuple(each for goal in request.goal for each in _bound(goal, things, named))
-                spoken = _spoken(acts, things, way, is_back, named)
+                goals = tuple(each for goal in request.goal for each in bound(goal, things, named))
+                spoken = spoken_of(acts, things, way, is_back, named)
                 return Clause(acts, goals, (*spoken, *self._places(slots.values())))
         return None
 
@@ -272,12 +225,10 @@ class ClauseReader:
                 bound += [(act, refs)] * act.times
             elif not act.optional:
                 return None
-        acts = tuple(act for group in _together(bound) for act in self._repeated(group, text))
+        acts = tuple(act for group in together(bound) for act in self._repeated(group, text))
         return (acts, named) if all(each.action for each in acts) else None
 
-    def _argument(
-        self, names: tuple[str, ...], many: int, things: Mapping[str, Refs], named: dict[str, Refs]
-    ) -> Refs:
+    def _argument(self, names: tuple[str, ...], many: int, things: Mapping[str, Refs], named: dict[str, Refs]) -> Refs:
         if "/" in names[0]:
             name, _, slot = names[0].partition("/")
             rooms = tuple(ref.name for ref in things.get(slot, ()))
@@ -348,7 +299,7 @@ class ClauseReader:
                     return None
                 acts.append(Act(asked.meant.action.name, tuple(ref for ref in refs if ref), text))
             if acts:
-                return Clause(tuple(acts), (), _spoken(acts, {}, ()))
+                return Clause(tuple(acts), (), spoken_of(acts, {}, ()))
         return None
 
     def _is_afforded(self, meant: Candidate) -> bool:
@@ -362,114 +313,5 @@ class ClauseReader:
         return refs[number - 1] if refs else None
 
 
-def _together(bound: Sequence[tuple[ActTemplate, list[Refs]]]) -> Iterator[list[tuple[ActTemplate, list[Refs]]]]:
-    """Yield the acts that are done with each of several things in turn, as grabbing and putting down are."""
-    group: list[tuple[ActTemplate, list[Refs]]] = []
-    for act, refs in bound:
-        many = [each for each in refs if len(each) > 1]
-        if group and many and many[0] in group[-1][1] and len(many[0]) > 1:
-            group.append((act, refs))
-            continue
-        if group:
-            yield group
-        group = [(act, refs)]
-    if group:
-        yield group
-
-
-def _bound(goal: Literal[str], things: Mapping[str, Refs], named: Mapping[str, Refs]) -> Iterator[Literal[Name]]:
-    (term,) = goal.terms
-    refs = things.get(term) or named.get(term, ())
-    yield from (Literal(goal.name, (ref.node if ref.node is not None else ref.name,), goal.negated) for ref in refs)
-
-
 def _is_back(known: Knowledge, text: str) -> bool:
     return all(each.back for each in mentions_in(known, text))
-
-
-def _spoken(
-    acts: Sequence[Act],
-    things: Mapping[str, Refs],
-    way: Sequence[ActTemplate],
-    is_back: Collection[str] = (),
-    named: Mapping[str, Refs] = {},
-) -> tuple[Spoken, ...]:
-    """Return the things of acts, the last first; of a table's row, those of its slots, and then of its classes.
-
-    What a pronoun stood for comes first: the next one stands for the same.
-    """
-    if not things:
-        return tuple(Spoken((ref,), act.action, at > 0) for act in reversed(acts) for at, ref in enumerate(act.objects))
-    found = []
-    for name, refs in things.items():
-        uses = [(act.action, at) for act in way for at, (names, _) in enumerate(act.arguments) if names == (name,)]
-        is_place = (bool(uses) and uses[0][1] > 0) or name in "pd"
-        found.append(Spoken(refs, uses[0][0] if uses else "", is_place and name not in is_back))
-    found.sort(key=lambda each: any(things[name] == each.refs for name in is_back))
-    others = (Spoken(refs, "", True) for refs in dict.fromkeys(named.values()) if refs not in things.values())
-    return (*reversed(found), *others)
-
-
-@lru_cache(maxsize=4096)
-def _matches(known: Knowledge, text: str) -> tuple[tuple[Request, Pattern, Mapping[str, str]], ...]:
-    """Return the requests that a clause may be, with the words of their slots: those whose things are of their kind."""
-    found = []
-    for request in requests():
-        for pattern in request.patterns:
-            match = pattern.pattern.fullmatch(text)
-            if match and all(
-                match[name] is None or _may_be(known, match[name], needs, is_one=name == "p")
-                for name, needs in pattern.needs.items()
-            ):
-                found.append((request, pattern, match.groupdict("")))
-    return tuple(found)
-
-
-def _may_be(known: Knowledge, text: str, needs: frozenset[str], *, is_one: bool) -> bool:
-    mentions = mentions_in(known, text)
-    return 0 < len(mentions) <= (1 if is_one else len(mentions)) and all(
-        each.back or any(fits(known, name, needs) for name in each.classes) for each in mentions
-    )
-
-
-@lru_cache(maxsize=4096)
-def plain_words(text: str) -> str:
-    """Return a clause without courtesy, and without openings such as `could you`."""
-    table = words()
-    text = " ".join(table.courtesy.sub(" ", text.lower()).split()).strip(" ,;:.!?-\"")
-    while (found := table.openings.match(text)) and found.end():
-        text = text[found.end() :].strip(" ,")
-    first, _, rest = text.partition(" ")
-    if first == "go" and rest and is_verb(rest.partition(" ")[0]) and not _WHERE.match(rest):
-        text = rest
-    return re.sub(r" +([,;])", r"\1", text)
-
-
-@lru_cache(maxsize=4096)
-def variants(text: str) -> tuple[str, ...]:
-    """Return the wordings of a clause: with its verb in the base form, and without endings that change nothing."""
-    found: dict[str, None] = {}
-    for each in _shortened(text):
-        found.setdefault(each)
-        for base in _based(each):
-            found.setdefault(base)
-    return tuple(found)
-
-
-def _shortened(text: str) -> Iterator[str]:
-    yield text
-    shorter = [text]
-    for _ in range(3):
-        found = [left for each in shorter for pattern in words().endings if (left := pattern.sub("", each)) != each]
-        shorter = [each.strip(" ,") for each in dict.fromkeys(found) if each.strip(" ,")]
-        yield from shorter
-
-
-def _based(text: str) -> Iterator[str]:
-    first, space, rest = text.partition(" ")
-    for lemma in verb_lemmas(first):
-        if lemma != first:
-            yield f"{lemma}{space}{rest}"
-
-
-__all__ = ["Act", "Clause", "ClauseReader", "Spoken", "plain_words", "variants"]

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.models.reading.clause_reader import Act, Clause, ClauseReader, Spoken, plain_words
+from hearth.models.reading.clause_matches import plain_words
+from hearth.models.reading.clause_reader import ClauseReader
 from hearth.models.reading.mentions import is_adjective
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
 from hearth.models.reading.scene import Scene
 from hearth.models.reading.spelling import spelled
+from hearth.models.reading.spoken_things import Act, Clause, Spoken
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
@@ -27,34 +29,41 @@ MOST_TRIED = 120
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus |, so (?!that\b)"
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
+    r"|, so (?!that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
 _ALTERNATIVE = re.compile(
-    r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise|say|preferably|ideally"
+    r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise"
+    r"|say|preferably|ideally"
     r"|if need be)\b(?: .*)?"
 )
 _CHOICE = re.compile(
     r",? or,? (?:else|failing that|otherwise|if (?:there is none|need be)|maybe|perhaps),? (?:on |in |at )?"
-    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in |at )?(?=the |a |an )",
+    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in "
+    r"|at )?(?=the |a |an )",
     re.IGNORECASE,
 )
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _CONTRACTED = re.compile(
-    r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open|closed|shut|on|off|running|dirty|empty|full"
+    r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
+    r"|closed|shut|on|off|running|dirty|empty|full"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
-_STATEMENT = re.compile(r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to ")
+_STATEMENT = re.compile(
+    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
+)
 _WISH = re.compile(
-    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work|know|hear|listen|be|cook|feel"
+    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
+    r"|know|hear|listen|be|cook|feel"
     r"|write|sit|lie|play|enjoy|study)\b"
 )
 _VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
 
 
 class Reading(NamedTuple):
-    """What a text asks for in a home.
+    """The acts that a text asks for in a home.
 
     Attributes:
         acts: in order.
@@ -82,7 +91,7 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
     reader = _Text(ClauseReader(Scene(known, world)))
     whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
     for sentence in _SENTENCES.split(whole):
-        plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(" .!?,;:\"")))
+        plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
             reader.sentence(plain)
     return reader.reading()
@@ -236,13 +245,14 @@ def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
 
 _REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
 _SUBORDINATE = re.compile(
-    r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to|for|at|in) "
+    r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
+    r"|for|at|in) "
     r"(.+?), (.+)"
 )
 
 
 def _main(text: str) -> tuple[str, str] | None:
-    """Return the clause of a sentence that says when or why, and what stands behind its comma; None without one."""
+    """Return the clause of a sentence that says when or why, and the rest behind its comma; None without one."""
     found = _SUBORDINATE.fullmatch(text) or _REASON.fullmatch(text)
     return (found[1], found[2]) if found else None
 

@@ -15,28 +15,39 @@ from hearth.models.reading.request_table import number_in, words
 EVERY, SEVERAL = 0, -1
 """Numbers of a mention: all things of a class, and a plural without a number."""
 
-_EVERY = re.compile(r"(?:all|every(?: single| last)?|each|whatever|any of)(?: one)?(?: of)?(?: the| my| your| our| these| those)? ")
+_EVERY = re.compile(
+    r"(?:all|every(?: single| last)?|each|whatever|any of)(?: one)?(?: of)?(?: the| my| your| our| these| those)? "
+)
 _COUNT = re.compile(
-    r"(?:the |my |your |our |these |those )?(a couple of|a pair of|both|one|two|three|four|five|six|seven|eight|nine|ten"
+    r"(?:the |my |your |our |these |those )?(a couple of|a pair of|both|one|two|three|four|five|six|seven|eight"
+    r"|nine|ten"
     r"|\d{1,2}|another)(?: of)?(?: the| my| your| our| these| those)? (?=\S)"
 )
-_SLICES = re.compile(r"(?:[a-z]+|\d+) (?:slices|pieces|bits|drops|spoonfuls|spoons|cans|bottles|cups|glasses|bites|sips) of (?=[a-z]+$)")
+_SLICES = re.compile(
+    r"(?:[a-z]+|\d+) (?:slices|pieces|bits|drops|spoonfuls|spoons|cans|bottles|cups|glasses|bites|sips) of (?=[a-z]+$)"
+)
 """Parts of one thing: two slices of bread are of one loaf."""
 
-_FEW = re.compile(r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) ")
+_FEW = re.compile(
+    r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) "
+)
 _DETERMINERS = re.compile(
-    r"(?:(?:a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of|slices of|pieces of"
-    r"|the rest of|one of|a little|the whole|the|a|an|some|any|my|your|his|her|our|their|its|this|that|these|those|whole|entire"
+    r"(?:(?:a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of"
+    r"|slices of|pieces of"
+    r"|the rest of|one of|a little|the whole|the|a|an|some|any|my|your|his|her|our|their|its|this|that|these"
+    r"|those|whole|entire"
     r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
     r"(?:it|them|they|that|this|those|these|one|ones|both|both of them|all of them|all of it|each|each of them|each one"
-    r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?|the (?:two|three|four) of them"
+    r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?"
+    r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
 _ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
 _PLACE = re.compile(
-    r" (?:,? ?(?:that|which)(?: is| are|'s| was| were| you find| i left| you can find| lies| stands| sits)? |lying |standing "
+    r" (?:,? ?(?:that|which)(?: is| are|'s| was| were| you find| i left| you can find| lies| stands| sits)? "
+    r"|lying |standing "
     r"|sitting |hanging |located |found |kept |stored )?"
     r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|from inside|behind"
     r"|under|above|for|belonging to|over|in front of|close to) (?=\S)"
@@ -45,12 +56,29 @@ _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besid
 _ALL_BEHIND = re.compile(r" (?:all|both|each)$")
 _LISTED = re.compile(r",? (?:and|or|as well as|along with|together with|plus|&)(?: also)? |, ")
 _RELATIVE = re.compile(
-    r" (?:(?:that|which|who) (?!is |are |was |were |lies |stands |sits )[a-z']+.*|(?:that |which )?(?:you|i|we) (?:can|could|have|own|see|find"
-    r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house|home|flat))$"
+    r" (?:(?:that|which|who) (?!is |are |was |were |lies |stands |sits )[a-z']+.*|(?:that |which )?(?:you|i"
+    r"|we) (?:can|could|have|own|see|find"
+    r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house"
+    r"|home|flat))$"
 )
 _PART_OF = re.compile(r"(.+?) of (?:the|my|your|our|this|that) (.+)")
-_EMPTY_WORDS = ("dirty", "empty", "dusty", "tasty", "pretty", "rusty", "misty", "thirsty", "salty", "fruity", "nasty", "cutty")
-_LAMP = re.compile(r"(?:the |my |your |both )?(desk|bedside|nightstand|table|counter|shelf|bookshelf|dresser) (lamps?|lights?)")
+_EMPTY_WORDS = (
+    "dirty",
+    "empty",
+    "dusty",
+    "tasty",
+    "pretty",
+    "rusty",
+    "misty",
+    "thirsty",
+    "salty",
+    "fruity",
+    "nasty",
+    "cutty",
+)
+_LAMP = re.compile(
+    r"(?:the |my |your |both )?(desk|bedside|nightstand|table|counter|shelf|bookshelf|dresser) (lamps?|lights?)"
+)
 _PACKAGE = re.compile(r" (?:carton|bottle|box|jar|packet|pack|bag|tube|tub|container|set|machine|unit|appliance)$")
 _RELATION = {"in": "INSIDE", "inside": "INSIDE", "from inside": "INSIDE", "out of": "INSIDE"} | {
     "on": "ON", "on top of": "ON", "off": "ON", "off of": "ON",
@@ -254,7 +282,9 @@ def _in_room(known: Knowledge, text: str, rest: str, count: int | None) -> Menti
 
 def _plain(known: Knowledge, text: str) -> Mention | None:
     """Return the things of a noun phrase without its first adjective: `the big red cup`."""
-    found = re.match(r"((?:(?:the|a|an|some|my|your|our|that|this|all|every|each|\w+ of|one|two|three|four|five|both) )*)"
+    found = re.match(
+        r"((?:(?:the|a|an|some|my|your|our|that|this|all|every|each|\w+ of|one|two|three|four|five"
+        r"|both) )*)"
                      r"([a-z'-]+),? (?=[a-z])", text)  # fmt: skip
     if not found or not is_adjective(found[2]):
         return None
@@ -267,7 +297,10 @@ def _plain(known: Knowledge, text: str) -> Mention | None:
 @lru_cache(maxsize=65_536)
 def is_adjective(word: str) -> bool:
     """Return whether a word is an adjective, or a participle, and no number."""
-    if re.fullmatch(r".*(?:teen|ty|hundred|thousand|million|eleven|twelve|dozen|zero)s?", word) and word not in _EMPTY_WORDS:
+    if (
+        re.fullmatch(r".*(?:teen|ty|hundred|thousand|million|eleven|twelve|dozen|zero)s?", word)
+        and word not in _EMPTY_WORDS
+    ):
         return False  # a number is no quality
     kinds = lemmas(word)
     if "ADJ" in kinds:

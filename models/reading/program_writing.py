@@ -1,4 +1,4 @@
-"""Programs for what was read: planned in a home, tidied, run, and held against what was asked."""
+"""Programs for a reading: planned in a home, tidied, run, and compared with the request."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from hearth.models.interface import Steps
-from hearth.models.reading.clause_reader import Act
 from hearth.models.reading.instruction_reading import Reading
+from hearth.models.reading.spoken_things import Act
 from hearth.repair.runnable_predictions import Completion, complete
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
@@ -20,7 +20,9 @@ from hearth.simulation.world.states import CLOSED, OPEN
 from hearth.simulation.world.world import World
 
 OPENS, CLOSES, WAITS, GRABS = "Open", "Close", "Wait", "Grab"
-KEEPS = frozenset({"Read", "LookAt", "Wash", "Rinse", "Wipe", "Scrub", "Touch", "Drink", "SwitchOn", "SwitchOff", "Cut", "Write"})
+KEEPS = frozenset(
+    {"Read", "LookAt", "Wash", "Rinse", "Wipe", "Scrub", "Touch", "Drink", "SwitchOn", "SwitchOff", "Cut", "Write"}
+)
 """Acts after which a held thing is still held."""
 
 HANDS = 2
@@ -126,7 +128,7 @@ def _planned_whole(acts: Sequence[Act], world: World, rules: Rules) -> _Plan:
 
 
 def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
-    """Return acts without those that were done already, with nothing done to their things since: a brake on repetition."""
+    """Return acts without those already done, where nothing was done to their things since: a brake on repetition."""
     found: list[Act] = []
     for act in _in_hands(acts):
         same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
@@ -199,7 +201,7 @@ def _opened(execution: Execution, sources: Sequence[int]) -> Iterator[tuple[int,
 def _closed(
     execution: Execution, sources: tuple[int, ...], opened: int, node: int, world: World, rules: Rules
 ) -> tuple[Execution, tuple[int, ...]] | None:
-    """Return a run in which a thing is closed after the last step that uses it or takes from it; None where it fails."""
+    """Return a run in which a thing is closed after its last use; None where it fails."""
     steps = execution.program.steps
     name = steps[opened].objects[0]
     index = world.home.index[node]

@@ -2,8 +2,8 @@
 
 A text is cut into clauses; each is read by a table of requests, or as a step in words. Out come acts about things of
 the home, in the order that the text says, and goals. The planner makes them run. Nothing is learned, and nothing is
-made up: a text with a part that is not understood has no program, but for long descriptions, of which the parts that are
-understood are done.
+made up: a text with a part that is not understood has no program. Of long descriptions, the parts that are understood
+are done.
 """
 
 from __future__ import annotations

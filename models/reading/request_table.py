@@ -66,7 +66,7 @@ class Request(NamedTuple):
         patterns: those of clauses that ask for it.
         ways: lists of acts, the first to be preferred.
         goal: literals that are to hold at the end, with slots as terms.
-        it: slots that no word names, with what the last thing that was spoken of must be to fill them.
+        it: slots that no word names, with the needs of the last thing spoken of that fills them.
     """
 
     patterns: tuple[Pattern, ...]
@@ -76,7 +76,7 @@ class Request(NamedTuple):
 
 
 class Words(NamedTuple):
-    """The words around requests (`request_words.yaml`); `groups` are the nouns of `things` that mean several classes."""
+    """The words around requests (`request_words.yaml`); `groups` are nouns of `things` for several classes."""
 
     courtesy: re.Pattern[str]
     openings: re.Pattern[str]

@@ -14,25 +14,36 @@ Clauses = tuple[str, ...]
 """Plainer clauses, in the order in which they are to be done."""
 
 _DUTY = (
-    r"(?:should|must|shall|(?:still )?(?:has|have) to|(?:still )?needs? to|can|could|may|might|ought to|is to|are to|wants? to"
+    r"(?:should|must|shall|(?:still )?(?:has|have) to|(?:still )?needs? to|can|could|may|might|ought to|is to"
+    r"|are to|wants? to"
     r"|had better|will have to|'s got to|has got to|have got to|deserves? to|is meant to|are meant to|would like to)"
 )
 _BETWEEN = r"(?: (?:now|then|all|both|please|also|still|first|afterwards|again|just|really|next))*"
 _STATE = (
-    r"(?:(?:switched |turned |left |kept |wide |firmly |put )?(?:on|off|open|closed|shut|drawn|running|out|going|lit|burning"
+    r"(?:(?:switched |turned |left |kept |wide |firmly |put )?(?:on|off|open|closed|shut|drawn|running|out"
+    r"|going|lit|burning"
     r"|plugged in|unplugged|clean|ajar|opened|away))"
 )
 _PASSIVE = (
     re.compile(rf"(?P<np>.+?) {_DUTY}{_BETWEEN} (?:be|get){_BETWEEN} (?P<verb>[a-z]+)(?P<rest> .+)?"),
-    re.compile(rf"(?:could|can|would|may|might|should|must) (?P<np>.+?){_BETWEEN} (?:be|get){_BETWEEN} (?P<verb>[a-z]+)(?P<rest> .+)?"),
-    re.compile(r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
-    re.compile(r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
-    re.compile(r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?|deserves?) (?:some )?(?P<verb>[a-z]+ing)(?P<rest> .+)?"),
+    re.compile(
+        rf"(?:could|can|would|may|might|should|must) (?P<np>.+?){_BETWEEN} (?:be"
+        rf"|get){_BETWEEN} (?P<verb>[a-z]+)(?P<rest> .+)?"),
+    re.compile(
+        r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?"
+        r"|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
+    re.compile(
+        r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is"
+        r"|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
+    re.compile(
+        r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?"
+        r"|deserves?) (?:some )?(?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?) (?:is|are) what (?:needs?|wants?) (?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
 )  # fmt: skip
 _GIVEN = re.compile(
-    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real |careful |[a-z]+y )*"
+    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real "
+    r"|careful |[a-z]+y )*"
     r"(?P<verb>[a-z]+)"
 )
 _NEEDS_ONE = re.compile(
@@ -40,16 +51,24 @@ _NEEDS_ONE = re.compile(
     r"(?:good |quick |proper |nice |little |thorough )*(?P<verb>[a-z]+)"
 )
 _LIGHT = re.compile(
-    r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little |long |short "
+    r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little "
+    r"|long |short "
     r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
 )
-_SPENT = re.compile(r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>(?!evening|morning)[a-z]+ing)\b(?P<rest> .+)?")
-_DONE = re.compile(r"(?:do|get on with|start|finish) (?:some|the|a bit of|a little|your) (?P<verb>[a-z]+ing)\b(?P<rest> .+)?")
+_SPENT = re.compile(
+    r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>(?!evening|morning)[a-z]+ing)\b(?P<rest> .+)?"
+)
+_DONE = re.compile(
+    r"(?:do|get on with|start|finish) (?:some|the|a bit of|a little|your) (?P<verb>[a-z]+ing)\b(?P<rest> .+)?"
+)
 _SPENT_IN = re.compile(
-    r"spend (?:some |a |the )?(?:while|time|bit|moment|evening|hour|minute|afternoon)? ?(?P<place>(?:in|on|at) .+?) (?P<verb>[a-z]+ing)"
+    r"spend (?:some |a |the )?(?:while|time|bit|moment|evening|hour|minute|afternoon)? ?(?P<place>(?:in|on"
+    r"|at) .+?) (?P<verb>[a-z]+ing)"
     r"(?P<rest> .+)?"
 )
-_TOOL_FIRST = re.compile(r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)")
+_TOOL_FIRST = re.compile(
+    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)"
+)
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
 _BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
@@ -58,33 +77,41 @@ _WITH_STATE = (
     re.compile(rf"(?P<clause>.+?),? (?:with|while|but with|and keep|and have) (?P<state>.+? {_STATE})"),
 )
 _UNTIL = re.compile(
-    r"(?:do not|don't|never|not) (?P<main>.+?) (?:until|till|before|unless) (?:you(?:'ve| have)? |having )?(?P<first>.+)"
+    r"(?:do not|don't|never|not) (?P<main>.+?) (?:until|till|before|unless) (?:you(?:'ve| have)? "
+    r"|having )?(?P<first>.+)"
 )
 _NOT_UNTIL = re.compile(r"(?P<main>.+?),? (?:but )?not (?:until|before) (?:you(?:'ve| have)? )?(?P<first>.+)")
-_BUT_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and|only)(?: please)? (?P<first>.+?) (?:first|beforehand|before that|before)")
+_BUT_FIRST = re.compile(
+    r"(?P<main>.+?),? (?:but|and|only)(?: please)? (?P<first>.+?) (?:first|beforehand|before that|before)"
+)
 _THE_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and) (?:first|before that|beforehand),? (?P<first>.+)")
 _AFTER = re.compile(
     r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
-    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+)"
+    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with"
+    r"| already)* )?(?P<first>.+)"
 )
-_AFTER_PLAIN = re.compile(r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)")
+_AFTER_PLAIN = re.compile(
+    r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
+)
 _AFTER_FIRST = re.compile(
     r"(?:only |right |just )?(?:after|once|when|as soon as|upon|having)"
-    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with| already)* )?(?P<first>.+?), "
+    r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with"
+    r"| already)* )?(?P<first>.+?), "
     r"(?:then |only then )?(?P<main>.+)"
 )
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _ROOM_FIRST = re.compile(
-    r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room|[a-z]+ bedroom)),? "
+    r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room"
+    r"|[a-z]+ bedroom)),? "
     r"(?P<to>on|in|onto|into|on top of|inside|next to) (?P<place>.+)"
 )
-_PREPOSITION = re.compile(r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)")
-_OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
-_PARTICLE = re.compile(
-    r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?"
+_PREPOSITION = re.compile(
+    r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)"
 )
+_OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
+_PARTICLE = re.compile(r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?")
 _IT_STATE = re.compile(rf"(?:and |but )?(?P<state>{_STATE})(?: again)?")
 _THERE = re.compile(r"(?P<clause>.+) (?:on |in |over )?there")
 _ITS_PLUG = re.compile(r"(?:pull|take|remove|disconnect)(?: out)? its plug(?: out)?")
@@ -101,8 +128,19 @@ def rewordings(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 def orders(text: str) -> Iterator[tuple[str, str]]:
-    """Yield a sentence as what is done first and what is done later, the likeliest first."""
-    for pattern in (_BUT_FIRST, _THE_FIRST, _UNTIL, _NOT_UNTIL, _AFTER_FIRST, _BEFORE_FIRST, _AFTER, _AFTER_PLAIN, _BEFORE, _WHILE):
+    """Yield a sentence as its earlier and its later part in time, the likeliest first."""
+    for pattern in (
+        _BUT_FIRST,
+        _THE_FIRST,
+        _UNTIL,
+        _NOT_UNTIL,
+        _AFTER_FIRST,
+        _BEFORE_FIRST,
+        _AFTER,
+        _AFTER_PLAIN,
+        _BEFORE,
+        _WHILE,
+    ):
         if found := pattern.fullmatch(text):
             yield found["first"].strip(" ,"), found["main"].strip(" ,")
 
@@ -167,7 +205,7 @@ def _with_state(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
-    """Yield a clause about what was spoken of before, that leaves this out: `and into the sink`, `then off again`."""
+    """Yield a clause that leaves out the thing spoken of before: `and into the sink`, `then off again`."""
     if _ITS_PLUG.fullmatch(text):
         yield ("unplug it",)
     if found := _OFF_TO.fullmatch(text):
@@ -182,7 +220,9 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
     if found := _THERE.fullmatch(text):
         yield (found["clause"],)
     first, space, rest = text.partition(" ")
-    if is_verb(first) and (not rest or re.match(r"(?:in|into|on|onto|up|down|off|out|back|away|at|to|under|with)\b", rest)):
+    if is_verb(first) and (
+        not rest or re.match(r"(?:in|into|on|onto|up|down|off|out|back|away|at|to|under|with)\b", rest)
+    ):
         yield (f"{first} it{space}{rest}",)
 
 

@@ -158,7 +158,9 @@ class Scene:
         on = bool(edge_rows.on(self.world, node) & places)
         if relation == "ON":
             return on or bool(edge_rows.inside(self.world, node) & places)
-        return on or any(edge_rows.room_of(self.world, i) == edge_rows.room_of(self.world, node) for i in indices(places))
+        return on or any(
+            edge_rows.room_of(self.world, i) == edge_rows.room_of(self.world, node) for i in indices(places)
+        )
 
     def _rooms_of(self, node: int) -> int:
         """Return the rooms of a thing: a door or a window between two rooms is of both."""

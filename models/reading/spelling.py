@@ -13,14 +13,42 @@ _WORD = re.compile(r"[a-z]{3,}")
 _LONG = 7
 """Letters from which two may be wrong."""
 
-_FUNCTION_WORDS = (
-    "the", "and", "then", "with", "from", "into", "onto", "before", "after", "please", "again", "don't", "for", "off", "that",
-    "when", "while", "where", "there", "once", "until", "both", "all", "every", "some", "your", "make", "sure", "first",
-)  # fmt: skip
+_FUNCTION_WORDS = [
+    "the",
+    "and",
+    "then",
+    "with",
+    "from",
+    "into",
+    "onto",
+    "before",
+    "after",
+    "please",
+    "again",
+    "don't",
+    "for",
+    "off",
+    "that",
+    "when",
+    "while",
+    "where",
+    "there",
+    "once",
+    "until",
+    "both",
+    "all",
+    "every",
+    "some",
+    "your",
+    "make",
+    "sure",
+    "first",
+]
+"""Words that no table has."""
 
 
 def spelled(known: Knowledge, text: str) -> str:
-    """Return a text in small letters with each word that is no English one replaced by the one known word that is near."""
+    """Return a text in small letters in which words that are not English are the known words next to them."""
     return _WORD.sub(lambda found: _corrected(known, found[0]), text)
 
 

@@ -7,7 +7,24 @@ from hearth.models.reading.scene import Refs, Scene
 from hearth.schemas.program import ObjectRef
 
 _ACTIONS = {"IN": "PutIn", "ON": "PutBack"}
-_NEVER = frozenset({"floor", "sink", "dishwasher", "washing_machine", "bed", "trashcan", "garbage_can", "bag", "basket", "box", "microwave", "oven", "stove", "toaster"})
+_NEVER = frozenset(
+    {
+        "floor",
+        "sink",
+        "dishwasher",
+        "washing_machine",
+        "bed",
+        "trashcan",
+        "garbage_can",
+        "bag",
+        "basket",
+        "box",
+        "microwave",
+        "oven",
+        "stove",
+        "toaster",
+    }
+)
 
 
 def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
@@ -29,7 +46,10 @@ def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
 
 def usual_way(known: Knowledge, thing: ObjectRef, place: ObjectRef) -> str:
     """Return the act by which a thing is put in or on a place, as is usual for it there."""
-    is_in, is_on = known.has(place.name, "CONTAINERS") or known.has(place.name, "RECIPIENT"), known.has(place.name, "SURFACES")
+    is_in, is_on = (
+        known.has(place.name, "CONTAINERS") or known.has(place.name, "RECIPIENT"),
+        known.has(place.name, "SURFACES"),
+    )
     if is_in and is_on:
         usual = [each for each in known.placements(thing.name) if each.destination == place.name]
         weights = {_ACTIONS[each.relation]: each.weight for each in usual if each.relation in _ACTIONS}
