@@ -39,6 +39,9 @@ from hearth.simulation.world.world import World
 HOMES = 3
 """Homes in which an instruction is tried."""
 
+ANY = ("birch", "maple", "willow")
+"""Homes for instructions that none can do."""
+
 
 class Row(NamedTuple):
     """An instruction.
@@ -48,7 +51,7 @@ class Row(NamedTuple):
         instruction: as a person says it.
         wordings: the same in other words.
         homes: in which it can be done.
-        goal: as text; "" where none is known.
+        goal: as text; "" where no home can do it.
     """
 
     id: str
@@ -92,8 +95,8 @@ def rows_of(path: Path) -> list[Row]:
     for line in path.read_text(encoding="utf-8").splitlines():
         given: dict[str, Any] = json.loads(line)
         found.append(
-            Row(given["id"], given["instruction"], tuple(given.get("wordings", ())), tuple(given["homes"]),
-                given.get("goal", ""))
+            Row(given["id"], given["instruction"], tuple(given.get("wordings") or ()), tuple(given["homes"] or ANY),
+                given.get("goal") or "")
         )  # fmt: skip
     return found
 

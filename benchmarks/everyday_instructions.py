@@ -2,7 +2,8 @@
 
 FILE has JSON lines of `id`, `instruction`, `wordings`, `homes` and `goal`, as `tests/models/everyday.jsonl`.
 `hearth.analysis.everyday_instructions` says how they are tried. Rows without a goal ask for what no home can do: they
-are to be refused.
+are to be refused. The figures: texts, the share of pairs of text and home in which the goal is reached, the share of texts
+for which it is in all homes, programs that run, programs that repeat themselves, and goals that held at the start.
 """
 
 import argparse
@@ -27,9 +28,14 @@ def main() -> None:
     said = [tried(row, row.instruction, home, asked) for row in rows for home in homes[row.id]]
     others = [tried(row, text, home, asked) for row in rows for text in row.wordings for home in homes[row.id]]
     for name, found in (("instructions", said), ("other wordings", others)):
-        if found:
-            print(f"{given.model}, {name}: {_line(found)}")
-    _show([each for each in (*said, *others) if not each.reached], given.show)
+        for kind, some in (("", [each for each in found if each.row.goal]), (
+                "that no home can do", [each for each in found if not each.row.goal])):  # fmt: skip
+            if some:
+                print(f"{given.model}, {name} {kind}: {_refused(some) if kind else _line(some)}".replace(" :", ":"))
+    missed = [
+        each for each in (*said, *others) if each.runs != bool(each.row.goal) or each.reached != bool(each.row.goal)
+    ]
+    _show(missed, given.show)
 
 
 def _warm(home: str):
@@ -47,6 +53,11 @@ def _line(found: list[Tried]) -> str:
         f"run {one.runs:.1%}; repeat themselves {one.repeats}; held at the start {one.held}; "
         f"{one.milliseconds:.0f} ms (99 %: {one.slowest:.0f} ms)"
     )
+
+
+def _refused(found: list[Tried]) -> str:
+    programs = sum(each.runs for each in found)
+    return f"refused {len(found) - programs} of {len(found)} ({1 - programs / len(found):.1%})"
 
 
 def _show(missed: list[Tried], most: int) -> None:
