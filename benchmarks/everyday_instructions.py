@@ -2,8 +2,9 @@
 
 FILE has JSON lines of `id`, `instruction`, `wordings`, `homes` and `goal`, as `tests/models/everyday.jsonl`.
 `hearth.analysis.everyday_instructions` says how they are tried. Rows without a goal ask for what no home can do: they
-are to be refused. The figures: texts, the share of pairs of text and home in which the goal is reached, the share of texts
-for which it is in all homes, programs that run, programs that repeat themselves, and goals that held at the start.
+are to be refused. The figures: texts, the share of pairs of text and home in which the goal is reached, the share of
+texts for which it is in all homes, programs that run, programs that repeat themselves, and goals that held at the
+start.
 """
 
 import argparse

@@ -14,7 +14,7 @@ from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.clause_matches import matches, plain_words, variants
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
-from hearth.models.reading.rewordings import rewordings
+from hearth.models.reading.rewordings import TAKES_TOOL, rewordings
 from hearth.models.reading.scene import Refs, Scene, fits
 from hearth.models.reading.spoken_things import Act, Clause, Spoken, bound, spoken_of, together
 from hearth.models.reading.usual_places import usual_place, usual_way
@@ -36,6 +36,9 @@ DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
 _CLOSE = "Close"
+_MANY = frozenset(
+    {"them", "they", "both", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
+)
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
 _HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
 _OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
@@ -78,9 +81,9 @@ class ClauseReader:
         if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
             found = self._asked(negated[1], spoken, steps)
             return Clause(forbidden=found.acts, spoken=found.spoken) if found else None
-        plain = self._placed(plain, spoken)
-        if (found := self._asked(plain, spoken, steps)) is not None:
-            return found
+        for each in dict.fromkeys((self._placed(plain, spoken), plain)):
+            if (found := self._asked(each, spoken, steps)) is not None:
+                return found
         if back := _BACKWARD.fullmatch(plain):
             first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
             if first:
@@ -108,6 +111,8 @@ class ClauseReader:
                 read = self.read(each, now, steps=steps, depth=depth + 1)
                 if read is None:
                     break
+                if clauses[1:] and each == clauses[0] and each.startswith(TAKES_TOOL):
+                    read = read._replace(spoken=tuple(one._replace(is_place=True) for one in read.spoken))
                 now = (*read.spoken, *now)
                 found = Clause(found.acts + read.acts, found.goals + read.goals, read.spoken + found.spoken,
                                found.forbidden + read.forbidden)  # fmt: skip
@@ -181,7 +186,7 @@ class ClauseReader:
             if mention.another:
                 refs = self._another(needs, spoken)
             elif mention.back:
-                refs = self._referred(needs, action, spoken)
+                refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
             elif mention.words in _DOORS and (own := self._opened(spoken)):
                 refs = own
             else:
@@ -204,13 +209,15 @@ class ClauseReader:
         last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
         return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
 
-    def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken]) -> Refs:
+    def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""
         groups = list(spoken)
         if action == _CLOSE:
             groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
         elif needs.isdisjoint(_OPENS):
             groups.sort(key=lambda each: each.is_place)
+        if is_many:
+            groups.sort(key=lambda each: len(each.refs) < 2)
         return next((each.refs for each in groups if all(fits(self.known, ref.name, needs) for ref in each.refs)), ())
 
     def _made(

@@ -27,6 +27,9 @@ MOST_PARTS = 14
 MOST_TRIED = 120
 """Joined parts of a sentence that are tried, at most."""
 
+SUMMED_UP = 3
+"""Sentences from which the first may sum up the others."""
+
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
@@ -50,6 +53,13 @@ _CONTRACTED = re.compile(
     r"|closed|shut|on|off|running|dirty|empty|full"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
+_UNMARKED = re.compile(
+    r"^((?:when|once|after|before|as soon as|while|if|since|because)"
+    r" (?:i|we|you|they|it|everything|everyone|that|this|the [a-z]+|my [a-z]+) [^,]+?),? ((?:i|we) (?!am\b"
+    r"|are\b|will\b|have\b).+)$"
+)
+"""A sentence whose first clause says when, without a comma behind it: `when I come home I shut the door`."""
+
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(
     r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
@@ -93,7 +103,7 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
     for sentence in _SENTENCES.split(whole):
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
-            reader.sentence(plain)
+            reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
     return reader.reading()
 
 
@@ -106,10 +116,18 @@ class _Text:
         self.unread: list[str] = []
         self.spoken: tuple[Spoken, ...] = ()
         self.tried = 0
+        self.sentences = 0
+        self.first = 0
 
     def sentence(self, text: str) -> None:
         """Read a sentence; what it says of the order of its acts is kept."""
         self.tried = 0
+        self.sentences += 1
+        self._sentence(text)
+        if self.sentences == 1:
+            self.first = len(self.found)
+
+    def _sentence(self, text: str) -> None:
         for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
             found = read(text, self.spoken)
             if found is not None:
@@ -221,8 +239,11 @@ class _Text:
             at += size
 
     def reading(self) -> Reading:
-        """Return what was read."""
+        """Return the acts that were read, without those of a first sentence that the others say in more words."""
         found = self.found
+        first = {(act.action, act.objects) for clause in found[: self.first] for act in clause.acts}
+        later = {(act.action, act.objects) for clause in found[self.first :] for act in clause.acts if act.objects}
+        found = found[self.first :] if first & later and self.sentences >= SUMMED_UP else found
         return Reading(
             tuple(act for clause in found for act in clause.acts),
             tuple(dict.fromkeys(goal for clause in found for goal in clause.goals)),

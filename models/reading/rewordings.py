@@ -13,6 +13,9 @@ from hearth.models.reading.mentions import mentions_in
 Clauses = tuple[str, ...]
 """Plainer clauses, in the order in which they are to be done."""
 
+TAKES_TOOL = "grab "
+"""The beginning of a clause that takes a tool: a pronoun in the next clause is not the tool."""
+
 _DUTY = (
     r"(?:should|must|shall|(?:still )?(?:has|have) to|(?:still )?needs? to|can|could|may|might|ought to|is to"
     r"|are to|wants? to"
