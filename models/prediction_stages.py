@@ -90,7 +90,8 @@ def show_sketch(writer: Trained | None, sketch: Steps, world: World, text: str =
     """
     request = Request("sketch", "", text, sketch, world)
     (written,) = writer.predict([request], beam) if writer and sketch else (sketch,)
-    completion = complete(written, world, world.home.knowledge)
+    known = world.home.knowledge
+    completion = complete(written, world, known, rules_of(known))
     return Shown(tuple(words_of(request)), sketch, completion, _failure(sketch, completion))
 
 

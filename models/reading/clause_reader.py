@@ -39,6 +39,7 @@ _CLOSE = "Close"
 _MANY = frozenset(
     {"them", "they", "both", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
 )
+_THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
 _HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
 _OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
@@ -123,6 +124,7 @@ class ClauseReader:
     def told(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
         found = []
+        text = _THERE_IS.sub(r"\2 \1", text)
         for name in things_in(self.known, text):
             if refs := self.scene.some((name,), 1):
                 found.append(Spoken(refs, "", bool(found)))

@@ -60,10 +60,13 @@ _UNMARKED = re.compile(
 )
 """A sentence whose first clause says when, without a comma behind it: `when I come home I shut the door`."""
 
+_BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
+_NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(
     r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
 )
+_OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
 _WISH = re.compile(
     r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
     r"|know|hear|listen|be|cook|feel"
@@ -103,7 +106,11 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
     for sentence in _SENTENCES.split(whole):
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
+            plain = _NEITHER.sub(r"\1 and \2 \3 not be ", plain)
             reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
+    is_bare = reader.sentences == 1 and reader.found and not reader.unread
+    if is_bare and not any(clause.acts or clause.forbidden for clause in reader.found):
+        reader.sentence(f"bring me {plain_words(text)}")  # `my glasses, please`
     return reader.reading()
 
 
@@ -158,8 +165,11 @@ class _Text:
             return None
         told = self.clauses.told(found["title"])
         read = self._read(found["rest"], (*told.spoken, *spoken))
-        if read and not any(each.acts for each in read):
-            return self._read(found["title"], spoken)  # `get dressed: pants and a shirt`
+        if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            start = _BEGINNING.match(found["title"])
+            alone = self._read(found["title"], spoken)
+            is_read = alone is not None and any(each.acts for each in alone)
+            return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
         return (told, *read) if read else None
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
@@ -203,6 +213,8 @@ class _Text:
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
         is_single = _PARTS.search(text) is None
+        if is_single and _OBSERVED.match(text):
+            return self.clauses.told(text)
         read = self.clauses.read(text, spoken, steps=is_single)
         if read is not None:
             return read
@@ -215,7 +227,7 @@ class _Text:
     def _told(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
         if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
-            return self.clauses.told(text)
+            return Clause() if text.startswith("not ") else self.clauses.told(text)
         if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
             return Clause()
         return self.clauses.named(text)
@@ -264,10 +276,10 @@ def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
 
 
-_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
+    r"|for|at|in|from|on|with|by|over|under|inside) "
 _SUBORDINATE = re.compile(
     r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
-    r"|for|at|in) "
+    r"|for|at|in|from|on|with|by|over|under|inside) "
     r"(.+?), (.+)"
 )
 

@@ -44,6 +44,8 @@ _PASSIVE = (
     re.compile(r"(?P<np>.+?) (?:is|are) what (?:needs?|wants?) (?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
 )  # fmt: skip
+_CAUSED = re.compile(r"^(?:have|get|see|want|need|i want|i need|see that|make sure|let|keep|leave) ")
+_UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
 _GIVEN = re.compile(
     r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real "
     r"|careful |[a-z]+y )*"
@@ -96,6 +98,7 @@ _AFTER = re.compile(
 _AFTER_PLAIN = re.compile(
     r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
 )
+_AFTER_YOU = re.compile(r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as) you (?P<first>.+)")
 _AFTER_FIRST = re.compile(
     r"(?:only |right |just )?(?:after|once|when|as soon as|upon|having)"
     r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with"
@@ -104,7 +107,9 @@ _AFTER_FIRST = re.compile(
 )
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
+_HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
+_STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
 _ROOM_FIRST = re.compile(
     r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room"
     r"|[a-z]+ bedroom)),? "
@@ -141,11 +146,15 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _BEFORE_FIRST,
         _AFTER,
         _AFTER_PLAIN,
+        _AFTER_YOU,
         _BEFORE,
         _WHILE,
     ):
         if found := pattern.fullmatch(text):
-            yield found["first"].strip(" ,"), found["main"].strip(" ,")
+            first, main = (found[part].strip(" ,") for part in ("first", "main"))
+            yield first, main
+            if (done := _HAVING.sub("", first)) != first:
+                yield done, main
 
 
 def _passive(known: Knowledge, text: str) -> Iterator[Clauses]:
@@ -159,6 +168,21 @@ def _passive(known: Knowledge, text: str) -> Iterator[Clauses]:
             yield (f"{lemma} {found['np']}{rest}",)
             if rest:
                 yield (f"{lemma}{rest} {found['np']}",)
+
+
+def _participle(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `wipe the counter down` of `get the counter wiped down`, and of `the counter wiped down`."""
+    plain = _CAUSED.sub("", text)
+    found = plain.split(" ")
+    for at in range(1, len(found)):
+        things, rest = " ".join(found[:at]), " ".join(found[at + 1 :])
+        lemmas = [lemma for lemma in verb_lemmas(found[at]) if lemma != found[at] or found[at] in _UNCHANGED]
+        if not lemmas or found[at].endswith("ing") or not _is_thing(known, things):
+            continue
+        for lemma in lemmas:
+            yield (f"{lemma} {things} {rest}".strip(),)
+            if rest:
+                yield (f"{lemma} {rest} {things}",)
 
 
 def _light(known: Knowledge, text: str) -> Iterator[Clauses]:
@@ -231,12 +255,14 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
     """Yield `put it on the table in the kitchen` of `put it in the kitchen on the table`."""
+    if found := _STATE_IN.fullmatch(text):
+        yield (f"{found['np']} in {found['room']} {found['state']}",)
     if (found := _ROOM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
         yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
 
 
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _tool, _light, _two, _room_last, _with_state, _without_object,
+    _passive, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
 )  # fmt: skip
 
 
