@@ -143,6 +143,8 @@ class _Text:
         self._in_part(text)
 
     def _whole(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        if _OBSERVED.match(text):
+            return None
         found = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
         return (found,) if found else None
 
@@ -276,7 +278,7 @@ def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
 
 
-    r"|for|at|in|from|on|with|by|over|under|inside) "
+_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
 _SUBORDINATE = re.compile(
     r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
     r"|for|at|in|from|on|with|by|over|under|inside) "
