@@ -16,6 +16,9 @@ app = typer.Typer(
 )
 
 
+DEFAULT_MODEL = "reader"
+"""The model that `model show` asks where a text stands alone."""
+
 app.command("table")(model_tables.table)
 app.command("tables")(model_tables.tables)
 
@@ -279,10 +282,12 @@ def show(
     A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are
     predicted: its steps with times, and the program. A model of demonstrations reads pictures from above.
 
-    `reader` refuses what it does not understand, or what the home cannot do; --explain prints the words of each step.
+    A text alone is read by `reader`, which refuses a text that it does not understand, or that the home cannot do.
+    With --explain it prints the words of each step.
 
     \b
     Example:
+      hearth model show "Make coffee"
       hearth model show reader "Heat the milk, then set the table for two" --home maple --explain
       hearth model show retrieve-edit "Turn on the TV and sit down" --home maple
       hearth model show planner --sketch sketch.txt --home maple --home birch
@@ -294,6 +299,8 @@ def show(
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.films.film_files import is_film
 
+    if not text and sketch is None and " " in model.strip():
+        model, text = DEFAULT_MODEL, model
     if is_film(text) and not is_demonstration(text):
         from hearth.commands import film_output
 

@@ -67,6 +67,9 @@ _STATEMENT = re.compile(
     r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
 )
 _OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
+_SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
+"""The beginning of a sentence that may ask for something where it stands alone, as `it is dark in here` does."""
+
 _WISH = re.compile(
     r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
     r"|know|hear|listen|be|cook|feel"
@@ -203,7 +206,7 @@ class _Text:
             if self.tried > MOST_TRIED:
                 return None
             clause = _glued(parts[:size], joints)
-            read = self._one(clause, spoken, verb)
+            read = self._one(clause, spoken, verb, is_all=size == len(parts) and not verb)
             if read is None:
                 continue
             now = (*_all_spoken((read,)), *spoken)
@@ -212,10 +215,11 @@ class _Text:
                 return (read, *rest)
         return None
 
-    def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str) -> Clause | None:
+    def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
         is_single = _PARTS.search(text) is None
-        if is_single and _OBSERVED.match(text):
+        is_told = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
+        if is_single and is_told:
             return self.clauses.told(text)
         read = self.clauses.read(text, spoken, steps=is_single)
         if read is not None:
