@@ -12,10 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from hearth.kb.action_sets import LATEST
 from hearth.kb.loading.load import default
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.reading.instruction_reading import Reading, read_text
-from hearth.models.reading.program_writing import Written, repeats, sketch_of, write_program
+from hearth.models.reading.narration import narrated
+from hearth.models.reading.program_writing import Written, repeats, write_program
 from hearth.schemas.failures import Failure
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.world import World
@@ -57,14 +59,15 @@ class Reader(Settings):
         return cls()
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
-        """Return the program for each text in its world; without a world, the acts that it asks for."""
+        """Return the program for each text in its world; without a world, its acts as people write programs."""
         return [self._steps(each) for each in requests]
 
     def _steps(self, request: Request) -> Steps:
         text = f"{request.title}. {request.description}" if request.description and request.title else (
             request.description or request.title)  # fmt: skip
         if request.world is None:
-            return sketch_of(read_text(text, default().of_set(3)))
+            known = default().of_set(LATEST)
+            return narrated(read_text(text, known).acts, known)
         found = self.answer(text, request.world, request.rules)
         return found.written.execution.program.steps if found.written else ()
 
