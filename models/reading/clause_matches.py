@@ -18,6 +18,10 @@ _WHERE = re.compile(
 )
 
 
+_PLACES = frozenset("pyd")
+"""Slots of one thing: places, vessels and devices."""
+
+
 @lru_cache(maxsize=4096)
 def matches(known: Knowledge, text: str) -> tuple[tuple[Request, Pattern, Mapping[str, str]], ...]:
     """Return the requests that a clause may be, with the words of their slots: those whose things are of their kind."""
@@ -26,7 +30,7 @@ def matches(known: Knowledge, text: str) -> tuple[tuple[Request, Pattern, Mappin
         for pattern in request.patterns:
             match = pattern.pattern.fullmatch(text)
             if match and all(
-                match[name] is None or _may_be(known, match[name], needs, is_one=name == "p")
+                match[name] is None or _may_be(known, match[name], needs, is_one=name in _PLACES)
                 for name, needs in pattern.needs.items()
             ):
                 found.append((request, pattern, match.groupdict("")))

@@ -47,6 +47,9 @@ _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
+_LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugged in)\b")
+"""What is not to be left so is to be changed."""
+
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
 _BACKWARD = re.compile(
@@ -79,6 +82,10 @@ class ClauseReader:
         plain = plain_words(text)
         if not plain:
             return None
+        if _LEFT_SO.match(plain) and (found := self._asked(plain, spoken, steps=False)) is not None:
+            return found
+        if _LEFT_SO.match(plain) and depth < DEEPEST and (found := self._reworded(plain, spoken, depth, steps)):
+            return found
         if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
             found = self._asked(negated[1], spoken, steps)
             return Clause(forbidden=found.acts, spoken=found.spoken) if found else None

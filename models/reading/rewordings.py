@@ -75,6 +75,7 @@ _TOOL_FIRST = re.compile(
     r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
+_TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
 _BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
 _BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
 _WITH_STATE = (
@@ -213,6 +214,8 @@ def _tool(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"grab {found['np']}", found["clause"])
         yield (f"{found['clause']} on {found['np']}",)
         yield (found["clause"], f"add {found['np']}")
+    if (found := _TOOL_ON.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"grab {found['np']}", f"clean {found['what']}")
     if found := _BY.fullmatch(text):
         yield (found["clause"],)
 
