@@ -48,7 +48,7 @@ _NEGATION = re.compile(
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
 _LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugged in)\b")
-"""What is not to be left so is to be changed."""
+"""A state in which a thing is not to be left: it is to be changed."""
 
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")

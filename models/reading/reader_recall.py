@@ -80,7 +80,7 @@ class TrainedReaderRecall:
 
 
 def read_program(request: Request) -> tuple[Steps, float]:
-    """Return the program of what a text asks for, as people write it, and the share of its clauses that are read."""
+    """Return the acts of a text as people write programs, and the share of its clauses that are read."""
     known = default().of_set(LATEST)
     reading = read_text(request.description or request.title, known)
     if not reading.acts and request.description:
