@@ -20,7 +20,7 @@ def main() -> None:
     options.add_argument("file", type=Path)
     options.add_argument("--model", default="reader")
     options.add_argument("--seed", type=int, default=0, help="of the homes that are chosen")
-    options.add_argument("--show", type=int, default=0, help="print so many that are not reached")
+    options.add_argument("--show", type=int, default=0, help="print at most this number that are not reached")
     given = options.parse_args()
     asked = asking(restore(given.model)[1])
     rows = rows_of(given.file)

@@ -66,8 +66,8 @@ def show_reading(reader: Reader, text: str, world: World) -> Shown:
     written = answer.written
     if written is None:
         nothing = complete((), world, world.home.knowledge)
-        heard = tuple(act.words for act in answer.reading.acts)
-        return Shown(found, sketch, nothing, answer.failure, heard, answer.reading.unread)
+        understood = tuple(act.words for act in answer.reading.acts)
+        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread)
     left_out = tuple((Step(act.action, act.objects), failure) for act, failure in written.left_out)
     completion = Completion(written.execution, left_out, written.sources)
     acts = written.acts

@@ -8,9 +8,9 @@ from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
+from hearth.models.reading.mentioned_nodes import fits
 from hearth.models.reading.mentions import mentions_in
 from hearth.models.reading.request_table import Pattern, Request, requests, words
-from hearth.models.reading.scene import fits
 
 _WHERE = re.compile(
     r"(?:to|on|in|into|near|by|over|up|out|and|back|home|online|outside|through|around|for|down|inside|next"

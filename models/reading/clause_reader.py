@@ -12,10 +12,10 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.clause_matches import matches, plain_words, variants
+from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
 from hearth.models.reading.rewordings import TAKES_TOOL, rewordings
-from hearth.models.reading.scene import Refs, Scene, fits
 from hearth.models.reading.spoken_things import Act, Clause, Spoken, bound, spoken_of, together
 from hearth.models.reading.usual_places import usual_place, usual_way
 from hearth.schemas.program import ObjectRef
@@ -128,7 +128,7 @@ class ClauseReader:
                 return found
         return None
 
-    def told(self, text: str) -> Clause:
+    def stated(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
         found = []
         text = _THERE_IS.sub(r"\2 \1", text)
@@ -138,7 +138,7 @@ class ClauseReader:
         return Clause(spoken=tuple(found))
 
     def named(self, text: str) -> Clause | None:
-        """Return a part that only names things, of which the next may say more; None where it is no name."""
+        """Return a part that only names things, of which the next may say more; None where it does not."""
         mentions = mentions_in(self.known, plain_words(text))
         refs = [self.scene.things(each, frozenset()) for each in mentions if not each.back]
         return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None

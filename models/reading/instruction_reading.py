@@ -9,11 +9,11 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_reader import ClauseReader
+from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective
+from hearth.models.reading.misspelled_words import spelled
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
-from hearth.models.reading.scene import Scene
-from hearth.models.reading.spelling import spelled
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
@@ -168,23 +168,23 @@ class _Text:
         found = _TITLE.fullmatch(text)
         if not found:
             return None
-        told = self.clauses.told(found["title"])
-        read = self._read(found["rest"], (*told.spoken, *spoken))
+        stated = self.clauses.stated(found["title"])
+        read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
             start = _BEGINNING.match(found["title"])
             alone = self._read(found["title"], spoken)
             is_read = alone is not None and any(each.acts for each in alone)
             return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
-        return (told, *read) if read else None
+        return (stated, *read) if read else None
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""
         parts = _main(text)
         if not parts:
             return None
-        told = self.clauses.told(parts[0])
-        read = self._read(parts[1], (*told.spoken, *spoken))
-        return (told, *read) if read else None
+        stated = self.clauses.stated(parts[0])
+        read = self._read(parts[1], (*stated.spoken, *spoken))
+        return (stated, *read) if read else None
 
     def _add(self, clauses: Sequence[Clause]) -> None:
         self.found += clauses
@@ -218,22 +218,22 @@ class _Text:
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
         is_single = _PARTS.search(text) is None
-        is_told = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
-        if is_single and is_told:
-            return self.clauses.told(text)
+        is_statement = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
+        if is_single and is_statement:
+            return self.clauses.stated(text)
         read = self.clauses.read(text, spoken, steps=is_single)
         if read is not None:
             return read
         if verb and not text.startswith(verb):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
         if read is None and is_single:
-            read = self._told(text, spoken)
+            read = self._stated(text, spoken)
         return read
 
-    def _told(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
+    def _stated(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
         if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
-            return Clause() if text.startswith("not ") else self.clauses.told(text)
+            return Clause() if text.startswith("not ") else self.clauses.stated(text)
         if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
             return Clause()
         return self.clauses.named(text)

@@ -129,7 +129,7 @@ def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Me
         return (whole,)
     joints = list(_LISTED.finditer(text))
     if joints and not is_inner and not joints[-1][0].strip(" ,"):
-        return ()  # `the fork, faucet` is no list
+        return ()  # `the fork, faucet` is not a list
     for found in reversed(joints):
         last = mention_of(known, text[found.end() :])
         before = mentions_in(known, text[: found.start()], True) if last else ()
@@ -301,7 +301,7 @@ def is_adjective(word: str) -> bool:
         re.fullmatch(r".*(?:teen|ty|hundred|thousand|million|eleven|twelve|dozen|zero)s?", word)
         and word not in _EMPTY_WORDS
     ):
-        return False  # a number is no quality
+        return False  # a number is not a quality
     kinds = lemmas(word)
     if "ADJ" in kinds:
         return True

@@ -73,7 +73,7 @@ class Reader(Settings):
 
     def answer(self, text: str, world: World, rules: Rules) -> Answer:
         """Return the program for a text in a home, or why there is none."""
-        from hearth.models.reading.refusals import refusal
+        from hearth.models.reading.unread_texts import refusal
 
         reading = read_text(text, world.home.knowledge, world)
         if (failure := refusal(reading, is_long=is_description(text))) is not None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from hearth.models.reading.mentioned_nodes import Refs
 from hearth.models.reading.request_table import ActTemplate
-from hearth.models.reading.scene import Refs
 from hearth.schemas.literals import Literal, Name
 
 

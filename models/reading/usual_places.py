@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hearth.kb.knowledge import Knowledge
-from hearth.models.reading.scene import Refs, Scene
+from hearth.models.reading.mentioned_nodes import Refs, Scene
 from hearth.schemas.program import ObjectRef
 
 _ACTIONS = {"IN": "PutIn", "ON": "PutBack"}

@@ -84,7 +84,7 @@ class Scene:
         return [i for i in nodes if not done >> i & 1] or nodes
 
     def some(self, names: Sequence[str], count: int, taken: Collection[int] = ()) -> Refs:
-        """Return so many things of the first class of which the home has enough."""
+        """Return a number of things of the first class of which the home has enough."""
         if self.world is None:
             return tuple(ObjectRef(names[0], n) for n in range(1, count + 1))
         for name in names:
