@@ -130,7 +130,7 @@ class ClauseReader:
 
     def stated(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
-        found = []
+        found: list[Spoken] = []
         text = _THERE_IS.sub(r"\2 \1", text)
         for name in things_in(self.known, text):
             if refs := self.scene.some((name,), 1):

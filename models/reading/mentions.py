@@ -52,7 +52,7 @@ _PLACE = re.compile(
     r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|from inside|behind"
     r"|under|above|for|belonging to|over|in front of|close to) (?=\S)"
 )
-_EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides) (?=\S)")
+_EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides|but(?= the one)) (?=\S)")
 _ALL_BEHIND = re.compile(r" (?:all|both|each)$")
 _LISTED = re.compile(r",? (?:and|or|as well as|along with|together with|plus|&)(?: also)? |, ")
 _RELATIVE = re.compile(

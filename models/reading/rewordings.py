@@ -77,7 +77,10 @@ _TOOL_FIRST = re.compile(
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
 _BY = re.compile(r".+? by (?P<clause>[a-z]+ing .+)")
-_BOTH = re.compile(r"(?P<one>[a-z]+)(?:,| and| or|, and| and then|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)")
+_BOTH = re.compile(
+    r"(?P<one>[a-z]+(?: (?:off|on|up|down|out))?)(?:,| and| or|, and| and then"
+    r"|, then)(?: then)? (?P<other>[a-z]+)(?P<rest> .+)"
+)
 _WITH_STATE = (
     re.compile(rf"with (?P<state>.+? {_STATE}),? (?P<clause>[a-z]+ .+)"),
     re.compile(rf"(?P<clause>.+?),? (?:with|while|but with|and keep|and have) (?P<state>.+? {_STATE})"),
@@ -223,7 +226,7 @@ def _tool(known: Knowledge, text: str) -> Iterator[Clauses]:
 def _two(known: Knowledge, text: str) -> Iterator[Clauses]:
     """Yield `open it` and `close it` of `open and close it`."""
     found = _BOTH.fullmatch(text)
-    if found and is_verb(found["one"]) and is_verb(found["other"]):
+    if found and is_verb(found["one"].partition(" ")[0]) and is_verb(found["other"]):
         yield (f"{found['one']}{found['rest']}", f"{found['other']}{found['rest']}")
 
 

@@ -94,7 +94,7 @@ def spoken_of(
     found = []
     for name, refs in things.items():
         uses = [(act.action, at) for act in way for at, (names, _) in enumerate(act.arguments) if names == (name,)]
-        is_place = (bool(uses) and uses[0][1] > 0) or name in "pd"
+        is_place = (bool(uses) and uses[0][1] > 0) or name in "pdqz"
         found.append(Spoken(refs, uses[0][0] if uses else "", is_place and name not in is_back))
     found.sort(key=lambda each: any(things[name] == each.refs for name in is_back))
     others = (Spoken(refs, "", True) for refs in dict.fromkeys(named.values()) if refs not in things.values())
