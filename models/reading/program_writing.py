@@ -95,8 +95,10 @@ def _planned(acts: Sequence[Act], world: World, rules: Rules) -> _Plan:
         if done.left_out:
             left_out.append((number, done.left_out[0][1]))
             continue
-        steps += done.execution.program.steps
-        sources += [number if source >= 0 else -1 for source in done.sources]
+        for step, source in zip(done.execution.program.steps, done.sources, strict=True):
+            if not steps or step != steps[-1] or step.action == WAITS:  # looked for once more
+                steps.append(step)
+                sources.append(number if source >= 0 else -1)
         world = done.execution.final
     return _Plan(tuple(steps), tuple(sources), tuple(left_out))
 

@@ -72,6 +72,12 @@ def test_nothing_is_done_twice_in_a_row(maple):
     assert all(one != other for one, other in pairwise(steps))
 
 
+def test_what_was_found_is_not_looked_for_once_more():
+    world = start_without(read_goal("ON(clothes_dress, bed)", home_named("cedar", KNOWN)), "cedar", "h64-049")
+    steps = steps_of("Find a dress in the dresser and put it on the bed.", world)
+    assert steps.count("Find clothes_dress") == 1 and steps[-1] == "PutBack clothes_dress bed"
+
+
 def test_the_brake_finds_lists_that_come_twice():
     one, two = (Step(name, (ObjectRef("bed", 1, 4),)) for name in ("Lie", "Sit"))
     assert repeats((one, one)) and repeats((one, two, one, two)) and not repeats((one, two, one))
