@@ -35,7 +35,7 @@ def start_for_goal(goal: Goal, home: str, seed: int, knowledge: Knowledge) -> Wo
     world: World | None = found[0].world
     chooser = rng(seed, "household start", home)
     for literal, _ in goal:
-        world = None if world is None else _undone(world, base, literal, goal, chooser)
+        world = None if world is None else undone(world, base, literal, goal, chooser)
     return None if world is None or any(Progress.start(goal, world).counts) else settled(world, seed)
 
 
@@ -56,7 +56,7 @@ def settled(world: World, seed: int) -> World:
     return World(placed.home, placed.states, (*agents, *placed.agents[1:]), placed.moved)
 
 
-def _undone(world: World, base: Base, literal: Literal[Name], goal: Goal, chooser: Random) -> World | None:
+def undone(world: World, base: Base, literal: Literal[Name], goal: Goal, chooser: Random) -> World | None:
     """Return the world in which a literal holds of nothing; None where a thing has no other place."""
     some = candidates(literal, world.home)
     if literal.target is None:

@@ -16,6 +16,9 @@ app = typer.Typer(
 )
 
 
+DEFAULT_MODEL = "reader"
+"""The model that `model show` asks where a text stands alone."""
+
 app.command("table")(model_tables.table)
 app.command("tables")(model_tables.tables)
 
@@ -268,6 +271,7 @@ def show(
     beam: int = 1,
     film: Path | None = None,
     masks: str = "masks",
+    explain: bool = False,
     as_json: bool = False,
 ) -> None:
     """Write a program for a text or a sketch and run it in a home: the words, the sketch, the program, each step shown.
@@ -278,8 +282,13 @@ def show(
     A model of films reads a film in place of the text, arrays of a dataset of clips or a video, whose masks are
     predicted: its steps with times, and the program. A model of demonstrations reads pictures from above.
 
+    A text alone is read by `reader`, which refuses a text that it does not understand, or that the home cannot do.
+    With --explain it prints the words of each step.
+
     \b
     Example:
+      hearth model show "Make coffee"
+      hearth model show reader "Heat the milk, then set the table for two" --home maple --explain
       hearth model show retrieve-edit "Turn on the TV and sit down" --home maple
       hearth model show planner --sketch sketch.txt --home maple --home birch
       hearth model show clips-seen data_out/clips/publish/films/FOLDER --film shown
@@ -290,6 +299,8 @@ def show(
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.films.film_files import is_film
 
+    if not text and sketch is None and " " in model.strip():
+        model, text = DEFAULT_MODEL, model
     if is_film(text) and not is_demonstration(text):
         from hearth.commands import film_output
 
@@ -304,7 +315,7 @@ def show(
         named = [{"home": name, **each} for name, each in zip(shown, documents, strict=True)]
         output.emit(documents[0] if len(named) == 1 else {"homes": named})
     else:
-        model_output.printed(shown)
+        model_output.printed(shown, explain=explain)
         for name, made in films.items():
             output.line(f"Film in {name}: {', '.join(made['pages'])}")
     output.status(sum(each.failure is not None for each in shown.values()), strict=True)

@@ -39,9 +39,11 @@ def shown(
     from hearth.commands.inputs import read_knowledge, read_program
     from hearth.grounding.environments.default_state import prepared
     from hearth.homes import library
+    from hearth.kb.action_sets import LATEST
     from hearth.models.demonstrations.demonstration_data import is_demonstration
     from hearth.models.model_registry import MODELS, restore
-    from hearth.models.prediction_stages import show_sketch, show_text
+    from hearth.models.prediction_stages import show_reading, show_sketch, show_text
+    from hearth.models.reading.reader import Reader
     from hearth.simulation.world.home import Home
     from hearth.simulation.world.world import World
 
@@ -49,6 +51,8 @@ def shown(
     name, trained = restore(model)
     _check(name, MODELS[name].input, text, sketch)
     beside = _writer(writer)
+    if isinstance(trained, Reader):
+        known = known.of_set(LATEST)
     steps = read_program(sketch, known).unbound().steps if sketch else ()
     above = is_demonstration(text)
     if above:
@@ -61,6 +65,8 @@ def shown(
             found[each] = show_sketch(beside, steps, world, "", beam)
         elif sketch:
             found[each] = show_sketch(trained, steps, world, text, beam)
+        elif isinstance(trained, Reader) and beside is None:
+            found[each] = show_reading(trained, text, world)
         else:
             found[each] = show_text(trained, text, world, beside, beam)
     return found
@@ -112,11 +118,18 @@ def document(one: Shown) -> dict[str, Any]:
         "executable": execution.executable and one.failure is None,
         "failure": one.failure,
         "left_out": [{"step": print_step(step), "failure": failure} for step, failure in left_out],
+        **({"explained": one.explained} if one.explained else {}),
+        **({"unread": one.unread} if one.unread else {}),
     }
 
 
-def printed(found: Mapping[str, Shown]) -> None:
-    """Print programs: the words and the sketch once, then each program, or two side by side."""
+def printed(found: Mapping[str, Shown], *, explain: bool = False) -> None:
+    """Print programs: the words and the sketch once, then each program, or two side by side.
+
+    Args:
+        found: by home.
+        explain: also print the words that each step is for.
+    """
     from hearth.schemas.failure_words import sentence
     from hearth.schemas.syntax import print_step
 
@@ -130,9 +143,21 @@ def printed(found: Mapping[str, Shown]) -> None:
         _print_beside(found)
     for home, one in found.items():
         if len(found) != 2:
-            output.line(f"Program in {home}:", *(f"  {line}" for line in document(one)["program"]), sep="\n")
+            output.line(f"Program in {home}:", *_program_lines(one, explain), sep="\n")
         runs = document(one)["executable"]
+        for part in one.unread:
+            output.line(f"Not understood: {output.shown(part)}")
         output.line("It runs." if runs else f"Nothing runs: {sentence(one.failure) if one.failure else ''}")
+
+
+def _program_lines(one: Shown, explain: bool) -> list[str]:
+    """Return the steps of a program, with the words that each is for."""
+    lines = [f"  {line}" for line in document(one)["program"]]
+    if not explain or not one.explained or not lines:
+        return lines
+    width = max(map(len, lines)) + 2
+    return [f"{line:<{width}}{output.shown(words) or '(so that it runs)'}"
+            for line, words in zip(lines, one.explained, strict=False)]  # fmt: skip
 
 
 def _print_beside(found: Mapping[str, Shown]) -> None:

@@ -7,11 +7,14 @@ from typing import NamedTuple
 
 from hearth.models.interface import Request, Steps
 from hearth.models.protocols import Trained
+from hearth.models.reading.program_writing import sketch_of
+from hearth.models.reading.reader import Reader
 from hearth.models.text.text_words import words_of
 from hearth.repair.runnable_predictions import Completion, complete
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Step
 from hearth.scoring.metrics.lcs import items
+from hearth.simulation.rules import rules_of
 from hearth.simulation.world.world import World
 
 
@@ -24,12 +27,16 @@ class Shown:
         sketch: the steps that were written or given, without nodes.
         completion: the program that runs, and the steps that were left out of it.
         failure: why nothing of it is left to run; None where something is.
+        explained: of the reader, the words that each step of the program is for; "" for a step that prepares others.
+        unread: of the reader, the parts of the text that are not understood.
     """
 
     words: tuple[str, ...]
     sketch: Steps
     completion: Completion
     failure: Failure | None
+    explained: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
 
 
 def show_text(trained: Trained, text: str, world: World, writer: Trained | None = None, beam: int = 1) -> Shown:
@@ -49,6 +56,25 @@ def show_text(trained: Trained, text: str, world: World, writer: Trained | None 
     return Shown(found, sketch, shown.completion, shown.failure if found else EMPTY)
 
 
+def show_reading(reader: Reader, text: str, world: World) -> Shown:
+    """Return the program of the reader for a text in a world, with the words that each step is for."""
+    found = tuple(words_of(Request("text", "", text)))
+    if not found:
+        return Shown((), (), complete((), world, world.home.knowledge), EMPTY)
+    answer = reader.answer(text, world, rules_of(world.home.knowledge))
+    sketch = sketch_of(answer.reading)
+    written = answer.written
+    if written is None:
+        nothing = complete((), world, world.home.knowledge)
+        understood = tuple(act.words for act in answer.reading.acts)
+        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread)
+    left_out = tuple((Step(act.action, act.objects), failure) for act, failure in written.left_out)
+    completion = Completion(written.execution, left_out, written.sources)
+    acts = written.acts
+    explained = tuple(acts[source].words if source >= 0 else "" for source in written.sources)
+    return Shown(found, sketch, completion, None, explained, answer.reading.unread)
+
+
 EMPTY = Failure(Code.EMPTY, expected="a text", actual="no words")
 
 
@@ -64,7 +90,8 @@ def show_sketch(writer: Trained | None, sketch: Steps, world: World, text: str =
     """
     request = Request("sketch", "", text, sketch, world)
     (written,) = writer.predict([request], beam) if writer and sketch else (sketch,)
-    completion = complete(written, world, world.home.knowledge)
+    known = world.home.knowledge
+    completion = complete(written, world, known, rules_of(known))
     return Shown(tuple(words_of(request)), sketch, completion, _failure(sketch, completion))
 
 

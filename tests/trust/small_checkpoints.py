@@ -6,7 +6,7 @@ Kinds that no checkpoint comes with are untrained and tiny: what reads them is t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -247,6 +247,13 @@ def _of_demonstrations() -> Checkpoint:
     return TrainedDemoModel(settings, vocabulary, known, settings.network(vocabulary, known)).checkpoint()
 
 
+def _recall() -> Checkpoint:
+    from hearth.models.reading.reader_recall import ReaderRecall
+
+    found = _came_with("retrieve-edit")()
+    return replace(found, model="reader-recall", settings=asdict(ReaderRecall()))
+
+
 KINDS: dict[str, Kind] = {
     "mle-composed": Kind(_came_with("mle-composed"), _write),
     "retrieve-edit": Kind(_came_with("retrieve-edit"), _write),
@@ -255,6 +262,7 @@ KINDS: dict[str, Kind] = {
     "nearest": Kind(_nearest, _write),
     "random-retrieval": Kind(_random, _write),
     "consensus": Kind(_consensus, _write),
+    "reader-recall": Kind(_recall, _write),
     "chooser": Kind(_came_with("chooser"), _ground),
     "resactgraph": Kind(_graphs, _ground),
     "masks": Kind(_came_with("masks"), _predict_masks),

@@ -1,0 +1,333 @@
+"""One clause of a request: the acts that it asks for, about things of a home."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.noun_phrases import things_in
+from hearth.kb.language.pronouns import Mentioned
+from hearth.kb.language.reading_modes import Fuzzy
+from hearth.kb.language.sentences import asked_steps
+from hearth.kb.language.step_understanding import Candidate
+from hearth.models.reading.clause_matches import matches, plain_words, variants
+from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
+from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
+from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
+from hearth.models.reading.rewordings import TAKES_TOOL, rewordings
+from hearth.models.reading.spoken_things import Act, Clause, Spoken, bound, spoken_of, together
+from hearth.models.reading.usual_places import usual_place, usual_way
+from hearth.schemas.program import ObjectRef
+
+PUT_AWAY = "PutAway"
+"""The act of the table that brings a thing to its usual place."""
+
+PUT_TO = "PutTo"
+"""The act of the table that puts a thing in or on a place, as is usual for it."""
+
+PUT_NEAR = "PutNear"
+"""The act of the table that puts a thing on the furniture of another, or else carries it there."""
+
+CONSUME = "Consume"
+"""The act of the table that eats food, and drinks what is a drink alone."""
+
+DEEPEST = 2
+"""Rewordings of a clause within one another, at most."""
+
+_CLOSE = "Close"
+_MANY = frozenset(
+    {"them", "they", "both", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
+)
+_THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
+_DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
+_HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
+_OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
+_NEGATION = re.compile(
+    r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
+    r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
+)
+_LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugged in)\b")
+"""A state in which a thing is not to be left: it is to be changed."""
+
+_LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
+_REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
+_BACKWARD = re.compile(
+    r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget)|but do not(?! forget)"
+    r"|and don't(?! forget)|but never|as long as you (?:don't|do not)"
+    r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
+)
+
+
+class ClauseReader:
+    """The reader of one text's clauses.
+
+    Attributes:
+        missing: what the home lacks of the things that were named.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.known = scene, scene.known
+        self.missing: dict[str, None] = {}
+
+    def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True, depth: int = 0) -> Clause | None:
+        """Return what a clause asks for; None where it is not understood.
+
+        Args:
+            text: in small letters.
+            spoken: the things of the clauses before, the last first.
+            steps: also as the reader of programs in words does, and in other words; not for several clauses.
+            depth: how often the clause was reworded.
+        """
+        plain = plain_words(text)
+        if not plain:
+            return None
+        if _LEFT_SO.match(plain) and (found := self._asked(plain, spoken, steps=False)) is not None:
+            return found
+        if _LEFT_SO.match(plain) and depth < DEEPEST and (found := self._reworded(plain, spoken, depth, steps)):
+            return found
+        if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
+            found = self._asked(negated[1], spoken, steps)
+            return Clause(forbidden=found.acts, spoken=found.spoken) if found else None
+        for each in dict.fromkeys((self._placed(plain, spoken), plain)):
+            if (found := self._asked(each, spoken, steps)) is not None:
+                return found
+        if back := _BACKWARD.fullmatch(plain):
+            first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
+            if first:
+                return first._replace(forbidden=other.acts if other else ())
+        return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
+
+    def _placed(self, text: str, spoken: Sequence[Spoken]) -> str:
+        """Return a clause with the name of the place that its `there` stands for."""
+        if not text.endswith(" there"):
+            return text
+        for each in spoken:
+            name = each.refs[0].name.replace("_", " ")
+            if self.known.is_room(each.refs[0].name):
+                return f"{text.removesuffix(' there')} in the {name}"
+            if each.is_place and _LEFT.match(text):
+                way = usual_way(self.known, each.refs[0], each.refs[0])
+                return f"{text.removesuffix(' there')} {'in' if way == 'PutIn' else 'on'} the {name}"
+        return text
+
+    def _reworded(self, text: str, spoken: Sequence[Spoken], depth: int, steps: bool) -> Clause | None:
+        """Return what a clause asks for in other words."""
+        for clauses in rewordings(self.known, text):
+            found, now = Clause(), tuple(spoken)
+            for each in clauses:
+                read = self.read(each, now, steps=steps, depth=depth + 1)
+                if read is None:
+                    break
+                if clauses[1:] and each == clauses[0] and each.startswith(TAKES_TOOL):
+                    read = read._replace(spoken=tuple(one._replace(is_place=True) for one in read.spoken))
+                now = (*read.spoken, *now)
+                found = Clause(found.acts + read.acts, found.goals + read.goals, read.spoken + found.spoken,
+                               found.forbidden + read.forbidden)  # fmt: skip
+            else:
+                return found
+        return None
+
+    def stated(self, text: str) -> Clause:
+        """Return a clause that asks for nothing, with the things that it speaks of."""
+        found: list[Spoken] = []
+        text = _THERE_IS.sub(r"\2 \1", text)
+        for name in things_in(self.known, text):
+            if refs := self.scene.some((name,), 1):
+                found.append(Spoken(refs, "", bool(found)))
+        return Clause(spoken=tuple(found))
+
+    def named(self, text: str) -> Clause | None:
+        """Return a part that only names things, of which the next may say more; None where it does not."""
+        mentions = mentions_in(self.known, plain_words(text))
+        refs = [self.scene.things(each, frozenset()) for each in mentions if not each.back]
+        return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None
+
+    def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
+        lacking: dict[str, str] = {}
+        for variant in variants(text):
+            for request, pattern, slots in matches(self.known, variant):
+                before = len(self.missing)
+                if lacking and {**slots} != lacking:
+                    continue  # the home lacks a thing: the words do not mean others for that
+                found = self._meant(request, pattern, slots, text, spoken)
+                if found is not None:
+                    return found
+                if len(self.missing) > before:
+                    lacking = {**slots}
+        return self._by_steps(text, spoken) if steps else None
+
+    def _meant(
+        self, request: Request, pattern: Pattern, slots: Mapping[str, str], text: str, spoken: Sequence[Spoken]
+    ) -> Clause | None:
+        """Return what a request means here; None where a slot names nothing that fits."""
+        count = number_in(slots.get("n", "")) or 1
+        for way in request.ways:
+            things: dict[str, Refs] = {}
+            for name, needs in pattern.needs.items():
+                if not slots[name]:
+                    continue
+                first = next((act.action for act in way if name in act.slots), "")
+                things[name] = self._things(slots[name], needs, first, spoken)
+            for name, needs in request.it.items():
+                things[name] = self._referred(needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place)))
+            if not all(things.values()):
+                return None
+            made = self._made(way, things, count, text)
+            if made is not None:
+                acts, named = made
+                is_back = {name for name in pattern.needs if slots[name] and _is_back(self.known, slots[name])}
+                goals = tuple(each for goal in request.goal for each in bound(goal, things, named))
+                spoken = spoken_of(acts, things, way, is_back, named)
+                return Clause(acts, goals, (*spoken, *self._places(slots.values())))
+        return None
+
+    def _places(self, texts: Iterable[str]) -> Iterator[Spoken]:
+        """Yield the furniture in or on which things are said to be."""
+        for mention in (each for text in texts if text for each in mentions_in(self.known, text)):
+            for _, names in mention.places:
+                if refs := self.scene.some(names, 1):
+                    yield Spoken(refs, "", True)
+
+    def _things(self, text: str, needs: frozenset[str], action: str, spoken: Sequence[Spoken]) -> Refs:
+        found: list[ObjectRef] = []
+        for mention in mentions_in(self.known, text):
+            if mention.another:
+                refs = self._another(needs, spoken)
+            elif mention.back:
+                refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
+            elif mention.words in _DOORS and (own := self._opened(spoken)):
+                refs = own
+            else:
+                refs = self.scene.things(mention, needs, action)
+            if not refs and not mention.back and any(fits(self.known, name, needs) for name in mention.classes):
+                self.missing.setdefault(mention.words)
+            if not refs:
+                return ()
+            found += [ref for ref in refs if ref not in found]
+        return tuple(found)
+
+    def _another(self, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
+        groups = [each.refs for each in spoken if not each.is_place]
+        refs = next((each for each in groups if all(fits(self.known, ref.name, needs) for ref in each)), ())
+        taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
+        return self.scene.others(refs, taken) if refs else ()
+
+    def _opened(self, spoken: Sequence[Spoken]) -> Refs:
+        """Return the furniture that was spoken of last, where it has a door of its own."""
+        last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
+        return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
+
+    def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
+        """Return the things of words before that `it` or `them` stands for."""
+        groups = list(spoken)
+        if action == _CLOSE:
+            groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
+        elif needs.isdisjoint(_OPENS):
+            groups.sort(key=lambda each: each.is_place)
+        if is_many:
+            groups.sort(key=lambda each: len(each.refs) < 2)
+        return next((each.refs for each in groups if all(fits(self.known, ref.name, needs) for ref in each.refs)), ())
+
+    def _made(
+        self, way: Sequence[ActTemplate], things: Mapping[str, Refs], count: int, text: str
+    ) -> tuple[tuple[Act, ...], dict[str, Refs]] | None:
+        """Return the acts of a way, and the things of classes that it names; None where the home lacks one."""
+        named: dict[str, Refs] = {}
+        bound: list[tuple[ActTemplate, list[Refs]]] = []
+        for act in way:
+            refs = [self._argument(names, many or count, things, named) for names, many in act.arguments]
+            if all(refs):
+                bound += [(act, refs)] * act.times
+            elif not act.optional:
+                return None
+        acts = tuple(act for group in together(bound) for act in self._repeated(group, text))
+        return (acts, named) if all(each.action for each in acts) else None
+
+    def _argument(self, names: tuple[str, ...], many: int, things: Mapping[str, Refs], named: dict[str, Refs]) -> Refs:
+        if "/" in names[0]:
+            name, _, slot = names[0].partition("/")
+            rooms = tuple(ref.name for ref in things.get(slot, ()))
+            return self.scene.things(Mention(name, (name,), 1, (("INSIDE", rooms),)), frozenset())
+        if names[0].endswith("@"):
+            return self.scene.contents(things.get(names[0][0], ()))
+        if is_slot(names[0]):
+            return things.get(names[0], ())
+        key = "|".join(names)
+        given = (refs for refs in things.values() if refs and all(ref.name in names for ref in refs))
+        if key not in named or len(named[key]) != max(many, 1):
+            found = next(given, ()) or self._by_class(names, many)
+            if not found:
+                return ()
+            named[key] = found
+            named.setdefault(names[0], found)
+        return named[key]
+
+    def _by_class(self, names: tuple[str, ...], many: int) -> Refs:
+        table = words().things
+        classes = tuple(each for name in names for each in (table[name] if name not in self.known.objects else (name,)))
+        if many == SEVERAL:
+            return self.scene.things(Mention(names[0], classes, SEVERAL, is_group=True), frozenset())
+        return self.scene.some(classes, many)
+
+    def _repeated(self, group: Sequence[tuple[ActTemplate, list[Refs]]], text: str) -> Iterator[Act]:
+        """Yield acts that follow each other with each of their things in turn."""
+        times = max((len(refs) for _, several in group for refs in several), default=1)
+        for n in range(times):
+            for act, several in group:
+                objects = tuple(refs[n % len(refs)] for refs in several)
+                if act.action == PUT_AWAY:
+                    action, place = usual_place(self.scene, objects[0])
+                    yield Act(action, (objects[0], *place), text)
+                elif act.action == PUT_NEAR:
+                    place = self.scene.support(objects[1])
+                    if place:
+                        yield Act("PutBack", (objects[0], *place), text)
+                    else:
+                        yield Act("Grab", objects[:1], text)
+                        yield Act("Walk", objects[1:], text)
+                elif act.action == CONSUME:
+                    yield Act("Eat" if self.known.has(objects[0].name, "EATABLE") else "Drink", objects, text)
+                elif act.action == PUT_TO:
+                    yield Act(usual_way(self.known, *objects), objects, text)
+                else:
+                    yield Act(self._fitting(act.action, objects), objects, text, act.optional)
+
+    def _fitting(self, action: str, objects: Refs) -> str:
+        """Return an act, or that of putting in where nothing is put on a place, as a sink."""
+        is_on = action == "PutBack" and len(objects) > 1
+        if is_on and not self.known.affords("PutBack", 1, objects[1].name):
+            return "PutIn" if self.known.affords("PutIn", 1, objects[1].name) else action
+        return action
+
+    def _by_steps(self, text: str, spoken: Sequence[Spoken]) -> Clause | None:
+        """Return what the reader of programs in words understands; None where it understands nothing."""
+        said = tuple(Mentioned(each.action, tuple(ref.name for ref in each.refs[:1])) for each in spoken)
+        for fuzzy in (Fuzzy.OFF, Fuzzy.TYPOS):
+            acts: list[Act] = []
+            for asked in asked_steps(self.known, text, said, fuzzy):
+                if asked.left_out or not self._is_afforded(asked.meant):
+                    return None
+                refs = tuple(self._named(name, asked.instance if not at else 1, spoken)
+                             for at, name in enumerate(asked.meant.names))  # fmt: skip
+                if not all(refs):
+                    self.missing.update(dict.fromkeys(asked.meant.names))
+                    return None
+                acts.append(Act(asked.meant.action.name, tuple(ref for ref in refs if ref), text))
+            if acts:
+                return Clause(tuple(acts), (), spoken_of(acts, {}, ()))
+        return None
+
+    def _is_afforded(self, meant: Candidate) -> bool:
+        return all(self.known.affords(meant.action.name, at, name) for at, name in enumerate(meant.names))
+
+    def _named(self, name: str, number: int, spoken: Sequence[Spoken]) -> ObjectRef | None:
+        before = next((ref for each in spoken for ref in each.refs if ref.name == name), None)
+        if before is not None and number == 1:
+            return before
+        refs = self.scene.some((name,), number)
+        return refs[number - 1] if refs else None
+
+
+def _is_back(known: Knowledge, text: str) -> bool:
+    return all(each.back for each in mentions_in(known, text))

@@ -1,0 +1,308 @@
+"""Texts: the acts that a person asks for, in the order in which they are to be done."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from hearth.kb.knowledge import Knowledge
+from hearth.models.reading.clause_matches import plain_words
+from hearth.models.reading.clause_reader import ClauseReader
+from hearth.models.reading.mentioned_nodes import Scene
+from hearth.models.reading.mentions import is_adjective
+from hearth.models.reading.misspelled_words import spelled
+from hearth.models.reading.request_table import words
+from hearth.models.reading.rewordings import orders
+from hearth.models.reading.spoken_things import Act, Clause, Spoken
+from hearth.schemas.literals import Literal, Name
+from hearth.simulation.world.world import World
+
+LONGEST = 4_000
+"""Characters that are read of a text, at most."""
+
+MOST_PARTS = 14
+"""Parts of a sentence, at most; a sentence of more is not read."""
+
+MOST_TRIED = 120
+"""Joined parts of a sentence that are tried, at most."""
+
+SUMMED_UP = 3
+"""Sentences from which the first may sum up the others."""
+
+_SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
+_PARTS = re.compile(
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
+    r"|, so (?!that\b)"
+    r"|[;,:] (?:and )?| - | – | — |\. )"
+)
+_ALTERNATIVE = re.compile(
+    r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise"
+    r"|say|preferably|ideally"
+    r"|if need be)\b(?: .*)?"
+)
+_CHOICE = re.compile(
+    r",? or,? (?:else|failing that|otherwise|if (?:there is none|need be)|maybe|perhaps),? (?:on |in |at )?"
+    r"|[,;] (?:if (?:you can't find one|there is none|there isn't one|not)|failing that|otherwise),? (?:on |in "
+    r"|at )?(?=the |a |an )",
+    re.IGNORECASE,
+)
+_CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
+_CONTRACTED = re.compile(
+    r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
+    r"|closed|shut|on|off|running|dirty|empty|full"
+    r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
+)
+_UNMARKED = re.compile(
+    r"^((?:when|once|after|before|as soon as|while|if|since|because)"
+    r" (?:i|we|you|they|it|everything|everyone|that|this|the [a-z]+|my [a-z]+) [^,]+?),? ((?:i|we) (?!am\b"
+    r"|are\b|will\b|have\b).+)$"
+)
+"""A sentence whose first clause says when, without a comma behind it: `when I come home I shut the door`."""
+
+_BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
+_NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
+_TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
+_STATEMENT = re.compile(
+    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
+)
+_OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
+_SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
+"""The beginning of a sentence that may ask for something where it stands alone, as `it is dark in here` does."""
+
+_WISH = re.compile(
+    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
+    r"|know|hear|listen|be|cook|feel"
+    r"|write|sit|lie|play|enjoy|study)\b"
+)
+_VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
+
+
+class Reading(NamedTuple):
+    """The acts that a text asks for in a home.
+
+    Attributes:
+        acts: in order.
+        goals: what is to hold at the end besides their effects.
+        forbidden: acts that are not to be done.
+        unread: parts that are not understood.
+        missing: things that were named, and that the home lacks.
+    """
+
+    acts: tuple[Act, ...] = ()
+    goals: tuple[Literal[Name], ...] = ()
+    forbidden: tuple[Act, ...] = ()
+    unread: tuple[str, ...] = ()
+    missing: tuple[str, ...] = ()
+
+
+def read_text(text: str, known: Knowledge, world: World | None = None) -> Reading:
+    """Return what a text asks for.
+
+    Args:
+        text: one or more sentences in English.
+        known: the knowledge of the world.
+        world: where it is to be done; None where only classes matter.
+    """
+    reader = _Text(ClauseReader(Scene(known, world)))
+    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
+    for sentence in _SENTENCES.split(whole):
+        plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
+        if plain:
+            plain = _NEITHER.sub(r"\1 and \2 \3 not be ", plain)
+            reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
+    is_bare = reader.sentences == 1 and reader.found and not reader.unread
+    if is_bare and not any(clause.acts or clause.forbidden for clause in reader.found):
+        reader.sentence(f"bring me {plain_words(text)}")  # `my glasses, please`
+    return reader.reading()
+
+
+class _Text:
+    """The reading of one text, sentence by sentence."""
+
+    def __init__(self, clauses: ClauseReader) -> None:
+        self.clauses = clauses
+        self.found: list[Clause] = []
+        self.unread: list[str] = []
+        self.spoken: tuple[Spoken, ...] = ()
+        self.tried = 0
+        self.sentences = 0
+        self.first = 0
+
+    def sentence(self, text: str) -> None:
+        """Read a sentence; what it says of the order of its acts is kept."""
+        self.tried = 0
+        self.sentences += 1
+        self._sentence(text)
+        if self.sentences == 1:
+            self.first = len(self.found)
+
+    def _sentence(self, text: str) -> None:
+        for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
+            found = read(text, self.spoken)
+            if found is not None:
+                self._add(found)
+                return
+        self._in_part(text)
+
+    def _whole(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        if _OBSERVED.match(text):
+            return None
+        found = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
+        return (found,) if found else None
+
+    def _in_order(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of a sentence with `before` or `after`; what is said first may be what a pronoun means."""
+        for first, later in orders(text):
+            main = self._read(later, spoken)
+            known = (*_all_spoken(main), *spoken)
+            ways = (self._read(each, known) for each in (first, f"make sure {first}"))
+            one = next((each for each in ways if each and any(clause.acts for clause in each)), None)
+            two = self._read(later, (*_all_spoken(one), *known)) if one else None
+            if one and two and any(each.acts for each in two):
+                return (*one, *two)
+        return None
+
+    def _titled(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses behind a title, as in `movie night: close the curtains`."""
+        found = _TITLE.fullmatch(text)
+        if not found:
+            return None
+        stated = self.clauses.stated(found["title"])
+        read = self._read(found["rest"], (*stated.spoken, *spoken))
+        if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            start = _BEGINNING.match(found["title"])
+            alone = self._read(found["title"], spoken)
+            is_read = alone is not None and any(each.acts for each in alone)
+            return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
+        return (stated, *read) if read else None
+
+    def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of a sentence without that before its comma that says when or why."""
+        parts = _main(text)
+        if not parts:
+            return None
+        stated = self.clauses.stated(parts[0])
+        read = self._read(parts[1], (*stated.spoken, *spoken))
+        return (stated, *read) if read else None
+
+    def _add(self, clauses: Sequence[Clause]) -> None:
+        self.found += clauses
+        self.spoken = (*_all_spoken(clauses), *self.spoken)[:12]
+
+    def _read(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of a text; None where a part of it is not understood."""
+        pieces = _PARTS.split(text)
+        return self._joined(pieces[::2], pieces[1::2], spoken, "") if len(pieces) < 2 * MOST_PARTS else None
+
+    def _joined(
+        self, parts: Sequence[str], joints: Sequence[str], spoken: tuple[Spoken, ...], verb: str
+    ) -> tuple[Clause, ...] | None:
+        """Return the clauses of parts; the first of as many parts as are read together."""
+        if not parts:
+            return ()
+        for size in range(len(parts), 0, -1):
+            self.tried += 1
+            if self.tried > MOST_TRIED:
+                return None
+            clause = _glued(parts[:size], joints)
+            read = self._one(clause, spoken, verb, is_all=size == len(parts) and not verb)
+            if read is None:
+                continue
+            now = (*_all_spoken((read,)), *spoken)
+            rest = self._joined(parts[size:], joints[size:], now, _verb_of(clause) or verb)
+            if rest is not None:
+                return (read, *rest)
+        return None
+
+    def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
+        """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
+        is_single = _PARTS.search(text) is None
+        is_statement = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
+        if is_single and is_statement:
+            return self.clauses.stated(text)
+        read = self.clauses.read(text, spoken, steps=is_single)
+        if read is not None:
+            return read
+        if verb and not text.startswith(verb):
+            read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
+        if read is None and is_single:
+            read = self._stated(text, spoken)
+        return read
+
+    def _stated(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
+        """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
+        if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
+            return Clause() if text.startswith("not ") else self.clauses.stated(text)
+        if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
+            return Clause()
+        return self.clauses.named(text)
+
+    def _in_part(self, text: str) -> None:
+        """Read the parts of a sentence that are understood, and keep the others as they are."""
+        pieces = _PARTS.split(text)
+        parts, joints = pieces[::2], pieces[1::2]
+        at, verb = 0, ""
+        while at < len(parts):
+            for size in range(min(len(parts) - at, 4), 0, -1):
+                clause = _glued(parts[at : at + size], joints[at:])
+                read = self._one(clause, self.spoken, verb)
+                if read is not None:
+                    self._add((read,))
+                    verb = _verb_of(clause) or verb
+                    break
+            else:
+                size = 1
+                self.unread.append(parts[at].strip())
+            at += size
+
+    def reading(self) -> Reading:
+        """Return the acts that were read, without those of a first sentence that the others say in more words."""
+        found = self.found
+        first = {(act.action, act.objects) for clause in found[: self.first] for act in clause.acts}
+        later = {(act.action, act.objects) for clause in found[self.first :] for act in clause.acts if act.objects}
+        found = found[self.first :] if first & later and self.sentences >= SUMMED_UP else found
+        return Reading(
+            tuple(act for clause in found for act in clause.acts),
+            tuple(dict.fromkeys(goal for clause in found for goal in clause.goals)),
+            tuple(act for clause in found for act in clause.forbidden),
+            tuple(self.unread),
+            tuple(self.clauses.missing) if self.unread else (),
+        )
+
+
+def _glued(parts: Sequence[str], joints: Sequence[str]) -> str:
+    text = parts[0]
+    for joint, part in zip(joints, parts[1:], strict=False):
+        text += joint + part
+    return text
+
+
+def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
+    return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
+
+
+_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
+_SUBORDINATE = re.compile(
+    r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
+    r"|for|at|in|from|on|with|by|over|under|inside) "
+    r"(.+?), (.+)"
+)
+
+
+def _main(text: str) -> tuple[str, str] | None:
+    """Return the clause of a sentence that says when or why, and the rest behind its comma; None without one."""
+    found = _SUBORDINATE.fullmatch(text) or _REASON.fullmatch(text)
+    return (found[1], found[2]) if found else None
+
+
+def is_aside(text: str) -> bool:
+    """Return whether a clause asks for nothing."""
+    if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
+        return False
+    return words().asides.fullmatch(text) is not None
+
+
+def _verb_of(text: str) -> str:
+    found = _VERB.match(plain_words(text))
+    return found[1] if found else ""

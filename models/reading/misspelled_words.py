@@ -1,0 +1,72 @@
+"""Misspelled words of a request, put right where one known word is meant."""
+
+from __future__ import annotations
+
+import re
+from functools import cache, lru_cache
+
+from hearth.kb.knowledge import Knowledge
+from hearth.kb.language.english_lexicon import is_english
+from hearth.models.reading.request_table import table_words
+
+_WORD = re.compile(r"[a-z]{3,}")
+_LONG = 7
+"""Letters from which two may be wrong."""
+
+_FUNCTION_WORDS = [
+    "the",
+    "and",
+    "then",
+    "with",
+    "from",
+    "into",
+    "onto",
+    "before",
+    "after",
+    "please",
+    "again",
+    "don't",
+    "for",
+    "off",
+    "that",
+    "when",
+    "while",
+    "where",
+    "there",
+    "once",
+    "until",
+    "both",
+    "all",
+    "every",
+    "some",
+    "your",
+    "make",
+    "sure",
+    "first",
+]
+"""Words that no table has."""
+
+
+def spelled(known: Knowledge, text: str) -> str:
+    """Return a text in small letters in which words that are not English are the known words next to them."""
+    return _WORD.sub(lambda found: _corrected(known, found[0]), text)
+
+
+@lru_cache(maxsize=16_384)
+def _corrected(known: Knowledge, word: str) -> str:
+    if word in _vocabulary(known) or is_english(word):
+        return word
+    from rapidfuzz.distance import OSA
+
+    most = 2 if len(word) >= _LONG else 1
+    near = [(OSA.distance(word, each, score_cutoff=most), sorted(each) != sorted(word), each)
+            for each in _vocabulary(known) if abs(len(each) - len(word)) <= most]  # fmt: skip
+    best = sorted(each for each in near if each[0] <= most)
+    is_sure = best and (len(best) == 1 or best[0][:2] < best[1][:2])
+    return best[0][2] if is_sure else word
+
+
+@cache
+def _vocabulary(known: Knowledge) -> frozenset[str]:
+    names = {part for name in known.object_spellings for part in re.split("[^a-z]+", name)}
+    return frozenset(word for word in (*table_words(), *names, *_FUNCTION_WORDS) if len(word) > 2)
