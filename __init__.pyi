@@ -15,6 +15,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find
+from hearth.llm.endpoint import Endpoint as Endpoint
 from hearth.pipelines.build import build as build
 from hearth.pipelines.readers.plans_in_words import parse_steps as parse_steps
 from hearth.rendering.film.execution_keyframes import trajectory_of as trajectory_of
