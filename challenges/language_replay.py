@@ -26,11 +26,11 @@ CHECKED = ("turns", "asked")
 """The parts of a transcript that reading the answers again gives; tokens and seconds are the server's word."""
 
 Fault = str
-"""What differs; "" where nothing does."""
+"""A difference in words; "" for none."""
 
 
 def answers_differ(task: Task, record: Record, language: Mapping[str, Mapping[str, Any]], known: Knowledge) -> Fault:
-    """Return in what the answers of language models are not those of the episode; "" where they are.
+    """Return how the answers of language models differ from the episode; "" where they do not.
 
     Args:
         task: the task of the episode.
@@ -52,7 +52,7 @@ def answers_differ(task: Task, record: Record, language: Mapping[str, Mapping[st
 def _replayed(
     task: Task, record: Record, number: int, facts: Mapping[str, Any], transcript: Mapping[str, Any], known: Knowledge
 ) -> Fault:
-    """Return in what one agent's answers differ."""
+    """Return how one agent's answers differ."""
     which = challenge(task.challenge)
     start = start_of(task, known, None if record.helped else 1)
     goals = goals_of(which, task, record, start.home)

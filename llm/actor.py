@@ -36,7 +36,7 @@ MARKUP = re.compile(r"<\|")
 """The beginning of the marks by which chats are taken apart; a name of a thing must not write one."""
 
 THOUGHT = re.compile(r"<think>.*?</think>", re.DOTALL)
-"""What some models write before they answer."""
+"""The thoughts that some models write before an answer."""
 
 
 class Ask(Protocol):
@@ -145,7 +145,7 @@ class Actor:
         return True, False
 
     def _answered(self, view: View, legal: Legal, stopped: bool) -> Choice:
-        """Ask the model, and return what its answer means; a fault is told in the next prompt."""
+        """Ask the model, and return the choice in its answer; the next prompt says why an answer was refused."""
         said = self._observation(view, legal, stopped)
         messages = list(self._chat(said))
         self.transcript.prompt(messages)
@@ -179,7 +179,7 @@ class Actor:
         return MARKUP.sub("< |", "\n".join([*heard, text]))
 
     def _chat(self, said: str) -> Iterator[Mapping[str, Any]]:
-        """Yield the messages of a prompt: how to act, earlier turns, and what is seen now."""
+        """Yield the messages of a prompt: how to act, earlier turns, and the observation."""
         yield {"role": "system", "content": self._system}
         memory = self._asking.memory
         for observation, answer in self._history[-memory:] if memory else ():

@@ -57,7 +57,7 @@ class Spent:
 
 
 class AnswerCache:
-    """Replies by the digest of what was asked.
+    """Replies by the digest of their requests.
 
     Args:
         file: the SQLite file; in memory where None.

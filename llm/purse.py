@@ -13,7 +13,7 @@ from hearth.schemas.failures import Code
 
 
 class Purse:
-    """Money for replies, counted by what servers say that they used.
+    """Money for replies; the tokens of each are the server's count.
 
     Args:
         means: with prices and the budget.

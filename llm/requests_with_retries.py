@@ -44,7 +44,7 @@ class Failed(Exception):  # noqa: N818 - a try, not the request
 
 @dataclass(frozen=True)
 class Answered:
-    """What came of a request: the JSON, and the number of tries."""
+    """The result of a request: the JSON, and the number of tries."""
 
     data: Any
     tries: int

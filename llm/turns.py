@@ -1,4 +1,4 @@
-"""Turns of a language model in an episode: what it answered, which fault that was, and what it took."""
+"""Turns of a language model in an episode: its answers, their faults, and their cost."""
 
 from __future__ import annotations
 
