@@ -10,6 +10,7 @@ from hearth.envs.text_protocol_settings import protocol
 from hearth.llm.actor import Actor
 from hearth.llm.addresses import is_model, read_name
 from hearth.llm.endpoint import endpoint_of
+from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import page
 from hearth.llm.settings import Asking, Means
 from hearth.llm.turns import is_transcript
@@ -79,7 +80,9 @@ def described(name: str, number: int, asking: Asking, means: Means) -> dict[str,
 
 def player_of(name: str, asking: Asking, means: Means, instruction: str, messages: bool, number: int) -> Agent:
     """Return a new agent that a language model decides for."""
-    return Actor(endpoint_of(name, asking, means).ask, asking, instruction, messages, number)
+    endpoint = endpoint_of(name, asking, means)
+    form = form_of(endpoint) if asking.constrained else ""
+    return Actor(endpoint.ask, asking, instruction, messages, number, form)
 
 
 def transcripts(players: Sequence[Any]) -> dict[str, Any] | None:

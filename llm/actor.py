@@ -7,7 +7,7 @@ that it says depends on the observations and the answers alone, so that recorded
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -18,6 +18,7 @@ from hearth.envs.compact_text import compact, printable, wanted_nodes
 from hearth.envs.text_protocol_settings import Protocol as Words
 from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import reason
+from hearth.llm.legal_commands import constraint
 from hearth.llm.prompt_pages import PromptPage, page
 from hearth.llm.replies import Reply
 from hearth.llm.settings import Asking
@@ -46,10 +47,6 @@ class Ask(Protocol):
         """Return the reply."""
 
 
-Constrain = Callable[[View, Legal], tuple[Mapping[str, Any], Callable[[str], bool]]]
-"""Gives the fields of a request that allow legal commands only, and whether an answer keeps to them."""
-
-
 @dataclass
 class _Walk:
     """A walk under way: its instruction, what was seen when it began, where it last was, and its ticks."""
@@ -72,7 +69,7 @@ class Actor:
         instruction: the task as somebody says it; the goal in words where empty.
         messages: whether it may say something instead of doing something.
         number: of the agent; a helper has another prompt.
-        constrain: allows legal commands only; None to allow any text.
+        form: the way in which the server is sent the grammar of legal commands (see `constraints`); "" for none.
     """
 
     subgoal = None
@@ -84,17 +81,17 @@ class Actor:
         instruction: str = "",
         messages: bool = False,
         number: int = ACTOR,
-        constrain: Constrain | None = None,
+        form: str = "",
     ) -> None:
         self._ask, self._asking, self._instruction = ask, asking or Asking(), instruction
-        self._messages, self._number, self._constrain = messages, number, constrain
+        self._messages, self._number, self._form = messages, number, form
         self._words: Words = protocol()
         self._page: PromptPage = page("helper" if number else "actor")
         self.reset_state()
 
     def reset_state(self) -> None:
         """Forget the episode."""
-        self.transcript = Transcript()
+        self.transcript = Transcript(constraint=self._form)
         self._goal, self._seed = Goal(), 0
         self._told = False
         self._walk: _Walk | None = None
@@ -149,7 +146,7 @@ class Actor:
         said = self._observation(view, legal, stopped)
         messages = list(self._chat(said))
         self.transcript.prompt(messages)
-        more, keeps = self._constrain(view, legal) if self._constrain is not None else ({}, None)
+        more, keeps = constraint(self._form, legal, self._words) if self._form else ({}, None)
         reply = self._ask(messages, self._seed, **more)
         text = reply.text[: self._words.most_answer + 1]
         choice, self._fault = self._understood(text, view, legal)

@@ -120,6 +120,21 @@ class Endpoint:
         self.cache.put(key, self.model, reply)
         return reply
 
+    def exchange(self, messages: Sequence[Message], **more: Any) -> Any:
+        """Return the JSON of a reply as the server wrote it; nothing is kept, and the budget is not asked.
+
+        Raises:
+            HearthError: NO_ANSWER.
+        """
+        once = self._through_client if self._client is not None else self._through_server
+        body = self._body(messages, 0, more)
+        return with_retries(lambda: once(body), self.means.tries, self.where, self._count_failed, self._sleep).data
+
+    def like(self, means: Means, asking: Asking) -> Endpoint:
+        """Return another endpoint of the same server."""
+        url = "" if self._client is not None else self.url
+        return Endpoint(url, self.model, asking, means, client=self._client, sleep=self._sleep)
+
     def _body(self, messages: Sequence[Message], seed: int, more: Mapping[str, Any]) -> dict[str, Any]:
         asking = self.asking
         body: dict[str, Any] = {"model": self.model, "messages": list(messages), "max_tokens": asking.most_tokens}

@@ -40,6 +40,7 @@ class Transcript:
         estimated: replies whose tokens the server did not count.
         cut: replies that ended because they were too long.
         disobeyed: replies that are outside the grammar that was sent.
+        constraint: the way in which the grammar of legal commands was sent; "" where none was.
     """
 
     turns: list[Turn] = field(default_factory=list)
@@ -50,6 +51,7 @@ class Transcript:
     estimated: int = 0
     cut: int = 0
     disobeyed: int = 0
+    constraint: str = ""
     _asked: Any = field(default_factory=lambda: blake2b(digest_size=16))
 
     def prompt(self, messages: Sequence[Mapping[str, Any]]) -> None:
@@ -81,6 +83,7 @@ class Transcript:
             "estimated": self.estimated,
             "cut": self.cut,
             "disobeyed": self.disobeyed,
+            "constraint": self.constraint,
         }
 
 
@@ -99,7 +102,7 @@ def faults_of(transcript: Mapping[str, Any]) -> Counter[str]:
 
 def is_transcript(given: Any) -> bool:
     """Return whether a value of JSON, perhaps a stranger's, is a transcript."""
-    names = {"turns", "asked", "seconds", *COUNTS}
+    names = {"turns", "asked", "seconds", "constraint", *COUNTS}
     if not isinstance(given, dict) or given.keys() != names or not isinstance(given["turns"], list):
         return False
     counted = all(type(given[name]) is int and 0 <= given[name] <= LARGEST for name in COUNTS)
@@ -107,7 +110,7 @@ def is_transcript(given: Any) -> bool:
     return (
         counted
         and timed
-        and isinstance(given["asked"], str)
+        and all(isinstance(given[name], str) and len(given[name]) < 100 for name in ("asked", "constraint"))
         and len(given["turns"]) <= MOST_TURNS
         and all(map(_is_turn, given["turns"]))
     )

@@ -113,7 +113,7 @@ def _ways(alternatives: Sequence[Sequence[Part]], names: Mapping[Part, str]) -> 
 
 
 def regex(grammar: LineGrammar) -> str:
-    """Return a grammar as a regular expression, in what all dialects share."""
+    """Return a grammar as a regular expression, in the syntax that all dialects share."""
     line = _either(grammar.alternatives)
     return line if grammar.most == 1 else rf"{line}(?:\n{line}){{0,{grammar.most - 1}}}"
 
@@ -206,5 +206,5 @@ def _escaped(text: str) -> str:
 
 
 def _quoted(text: str) -> str:
-    r"""Return a text in quotes, as GBNF and Lark have it: escapes of `"`, `\` and of what cannot be printed."""
+    r"""Return a text in quotes, as GBNF and Lark have it: with escapes of `"`, `\` and of unprintable characters."""
     return json.dumps(text, ensure_ascii=False)

@@ -53,7 +53,7 @@ def step_grammar(knowledge: Knowledge, most: int = MOST_STEPS) -> LineGrammar:
 def _pairs(first: Choice, second: Choice) -> Iterator[list[Part]]:
     """Yield the ways to write two arguments, after the bracket of the first; no object is named twice.
 
-    Two of a class are the first and a later one. Classes that may be both arguments go by blocks: the others of the
+    Two of a class are the first and a later one. Classes that may be both arguments come in blocks: the others of the
     block are listed for each, and those of other blocks once for all, so that the length grows slowly.
     """
     shared = {*first} & {*second}
