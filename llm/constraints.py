@@ -20,9 +20,13 @@ FIELD = "command"
 """The field of the JSON that holds the answer."""
 
 
+def schema_fields(schema: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the fields of a request that send a JSON schema."""
+    return {"response_format": {"type": SCHEMA, SCHEMA: {"name": "answer", "strict": True, "schema": schema}}}
+
+
 def _schema(grammar: LineGrammar) -> dict[str, Any]:
-    wrapped = {"name": "answer", "strict": True, "schema": lines_schema(grammar, FIELD)}
-    return {"response_format": {"type": SCHEMA, SCHEMA: wrapped}}
+    return schema_fields(lines_schema(grammar, FIELD))
 
 
 FORMS: Mapping[str, Callable[[LineGrammar], dict[str, Any]]] = {

@@ -91,6 +91,12 @@ class Endpoint:
         """Return the sums of the ledger; those of a cache that is kept include earlier runs."""
         return self.cache.spent(self.model)
 
+    def spending(self) -> str:
+        """Return the tokens and the cost until now, in words for a progress line."""
+        spent = self.spent
+        cost = f", {self.purse.spent:.4f} spent" if self.means.prices else ""
+        return f"{spent.tokens_in + spent.tokens_out:,} tokens{cost}"
+
     def __call__(self, prompt: str) -> str:
         """Return the reply to a single prompt, as text agents ask."""
         return self.ask([{"role": "user", "content": prompt}]).text

@@ -88,7 +88,7 @@ def _keep(endpoint: Endpoint, found: Mapping[str, Any]) -> None:
 
 
 def _impatient(endpoint: Endpoint) -> Endpoint:
-    """Return an endpoint of the same server that keeps nothing, and tries twice: a server may fail at things that it lacks."""
+    """Return an endpoint of the same server that keeps nothing, and tries twice; a server may fail at a field."""
     means = replace(endpoint.means, tries=2, cache=None, budget=None, offline=False)
     return endpoint.like(
         means, replace(endpoint.asking, temperature=min(endpoint.asking.temperature, 0.0), most_tokens=48)

@@ -11,7 +11,7 @@ from typing import Any
 
 from hearth.schemas.yaml_limits import packaged
 
-ROLES = ("actor", "helper")
+ROLES = ("actor", "helper", "planner")
 """The roles; each has a page in `llm/prompts/`."""
 
 

@@ -154,7 +154,7 @@ def predict_part(
     """
     dataset = Dataset.open(folder)
     name, trained = restore(model)
-    names = _asked(dataset, split, part, originals)
+    names = names_asked(dataset, split, part, originals)
     if split and not part.startswith("train"):
         refuse_seen(model, dataset, split, names)
     text = MODELS[name].input == "text"
@@ -165,7 +165,8 @@ def predict_part(
     return write(completed(dataset, found) if repaired else found, out)
 
 
-def _asked(dataset: Dataset, split: str, part: str, originals: bool) -> list[str]:
+def names_asked(dataset: Dataset, split: str, part: str, originals: bool) -> list[str]:
+    """Return the ids of the executions of a part; without those of augmented programs if `originals`."""
     names = chosen(dataset, split, part)
     if originals:
         query = "SELECT execution_id FROM executions JOIN programs USING (program_id) WHERE parent_id IS NULL"
