@@ -36,7 +36,6 @@ def predict(
     out: Path,
     split: str,
     part: str,
-    *,
     shots: int,
     repair: bool,
     originals: bool,

@@ -113,8 +113,7 @@ def predict(
     """
     if model.startswith("llm:"):
         asked = language_predictions.asked_model(model, out, llm, cache, prices, budget, constrained)
-        how = {"shots": shots, "repair": repair, "originals": originals, "as_json": as_json}
-        language_predictions.predict(asked, dataset, out, split, part, **how)
+        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, as_json)
         return
     language_predictions.refuse_options(shots, llm, cache, prices, budget)
     from hearth.commands.progress_line import bar

@@ -122,7 +122,8 @@ class AnswerCache:
         sums = "count(*), coalesce(sum(tokens_in), 0), coalesce(sum(tokens_out), 0), coalesce(sum(seconds), 0.0)"
         row = self._run(f"SELECT {sums} FROM answers WHERE model = ?", (model,))[0]
         failed = Counter(dict(self._run("SELECT reason, tries FROM failed_tries WHERE model = ?", (model,))))
-        return Spent(*row, row[0] + failed.total(), tuple(sorted(failed.items())))
+        replies, tokens_in, tokens_out, seconds = row
+        return Spent(replies, tokens_in, tokens_out, seconds, replies + failed.total(), tuple(sorted(failed.items())))
 
     def facts(self, model: str, url: str) -> str | None:
         """Return what a probe found about a server, as JSON; None where none was made."""

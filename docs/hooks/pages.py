@@ -36,6 +36,7 @@ ENTRY_POINTS = {
         "hearth:TextHome", "hearth:TextHomes",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
+    "Language models": ("hearth:Endpoint",),
     "Goals and checks": (
         "hearth.challenges.instruction_writer:instruction",
         "hearth.challenges.instruction_reader:read_instruction",
