@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -67,9 +67,9 @@ def submissions(paths: Sequence[Path], known: Known, workers: int = 1, seen: See
     for number, path in enumerate(paths, 1):
         results = read_whole(path)
         faults = verify(results, str(path), known, workers)
-        hazards = None if faults else _hazards(results, known, workers)
-        found.append(Submission(_row(path, results, [fault.message for fault in faults], hazards), results))
+        found.append(Submission(_row(path, results, [fault.message for fault in faults]), results))
         seen(number, len(paths))
+    _count_hazards(found, known, workers)
     return sorted(found, key=lambda each: _rank(each.row))
 
 
@@ -78,7 +78,7 @@ def _rank(row: Mapping[str, Any]) -> tuple[Any, ...]:
     return not row["verified"], -(speedup or 0) if row["helper"] != "none" else 0, -(row["success"] or 0), row["file"]
 
 
-def _row(path: Path, results: Results, faults: Sequence[str], hazards: Counter[str] | None) -> dict[str, Any]:
+def _row(path: Path, results: Results, faults: Sequence[str]) -> dict[str, Any]:
     header = results.header
     helped = header.helped[-1]
     figures = summary(results.finished(False), results.finished(True) if helped else {})
@@ -103,7 +103,7 @@ def _row(path: Path, results: Results, faults: Sequence[str], hazards: Counter[s
         "speedup": figures["speedup"] if helped else None,
         "speedup_se": figures["speedup_se"] if helped else None,
         "reward": figures["reward"],
-        "hazards": None if hazards is None else dict(hazards.most_common()),
+        "hazards": None,
         **_language(results),
         "verified": not faults,
         "differences": list(faults),
@@ -142,26 +142,39 @@ def _language(results: Results) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class _Watched:
-    """Episodes of a task whose hazards are to be counted."""
+    """An episode whose hazards are to be counted, and the number of its run."""
 
+    run: int
     task: Task
     record: Record
     known: Known
 
 
-def _hazards(results: Results, known: Known, workers: int) -> Counter[str]:
-    tasks = {task.id: task for task in results.header.suite.tasks}
-    helped = results.header.helped[-1]
-    jobs = (_Watched(tasks[each.task], each, known) for each in results.records if each.helped == helped)
-    return sum(spread(hazards_of, jobs, workers), Counter())
+def _count_hazards(found: Sequence[Submission], known: Known, workers: int) -> None:
+    """Fill the hazards of the runs that are verified; all episodes go to the same processes, which start once."""
+    counts = {number: Counter[str]() for number, each in enumerate(found) if each.row["verified"]}
+    for number, hazards in spread(hazards_of, _watched(found, counts, known), workers):
+        counts[number] += hazards
+    for number, hazards in counts.items():
+        found[number].row["hazards"] = dict(hazards.most_common())
 
 
-def hazards_of(watched: _Watched) -> Counter[str]:
-    """Return the hazards that a verified episode brought, by name."""
+def _watched(found: Sequence[Submission], numbers: Iterable[int], known: Known) -> Iterator[_Watched]:
+    for number in numbers:
+        results = found[number].results
+        tasks = {task.id: task for task in results.header.suite.tasks}
+        helped = results.header.helped[-1]
+        yield from (
+            _Watched(number, tasks[each.task], each, known) for each in results.records if each.helped == helped
+        )
+
+
+def hazards_of(watched: _Watched) -> tuple[int, Counter[str]]:
+    """Return the hazards that a verified episode brought, by name, and the number of its run."""
     which = challenge(watched.task.challenge)
     start = start_of(watched.task, watched.known(), None if watched.record.helped else 1)
     ticks, _, _ = replayed(which, watched.task, watched.record, start)
-    return Counter(found.hazard.name for found in hazards_among((start, *(tick.world for tick in ticks))))
+    return watched.run, Counter(found.hazard.name for found in hazards_among((start, *(tick.world for tick in ticks))))
 
 
 def comparisons(found: Sequence[Submission]) -> Iterator[dict[str, Any]]:

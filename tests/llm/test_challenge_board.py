@@ -79,7 +79,7 @@ def test_the_page_escapes_names_and_needs_no_network(found):
 
 def test_the_command(files, tmp_path):
     out = tmp_path / "pages/board.html"
-    words = ["challenge", "board", *map(str, files), "--out", str(out)]
+    words = ["challenge", "board", *map(str, files), "--out", str(out), "-j", "1"]
     shown = CliRunner().invoke(cli.app, [*words, "--json"])
     rows = json.loads(shown.stdout)
     assert shown.exit_code == 0 and [row["file"] for row in rows] == ["people.jsonl", "model.jsonl"]
