@@ -81,7 +81,7 @@ def layout(home: Home, protocol: Protocol) -> Layout:
         found["not_targets"] |= bit * (name in protocol.not_targets)
         found["hollow"] |= bit * known.affords("PutIn", 1, name)
         found["opened"] |= bit * known.affords("Open", 0, name)
-    return Layout(tuple(f"{name} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
+    return Layout(tuple(f"{printable(name)} {home.ids[i]}" for i, name in enumerate(home.classes)), **found)
 
 
 def wanted_nodes(goal: Goal, home: Home, seen: int) -> int:
@@ -113,7 +113,7 @@ def compact(
     writer = _Writer(view, legal, goal, protocol, stopped)
     head = [writer.goal(task), writer.me(), *writer.others()]
     if note := last or writer.last():
-        head.append(f"Last: {_cut(note, protocol.most_last)}")
+        head.append(f"Last: {_cut(printable(note), protocol.most_last)}")
     return _cut(_within(writer, "\n".join(head), protocol.usual), protocol.most)
 
 
@@ -205,7 +205,7 @@ class _Writer:
         yield from map(self._other, self.view.others)
 
     def _other(self, pose: Pose) -> str:
-        last = f", tried {said_step(plain(pose.last.instruction))}" if pose.last is not None else ""
+        last = f", tried {printable(said_step(plain(pose.last.instruction)))}" if pose.last is not None else ""
         return f"Agent {pose.agent}: here, holding {self._names(pose.holding)}{last}."
 
     def _states(self) -> dict[int, str]:
@@ -220,7 +220,7 @@ class _Writer:
         for i in indices(self.home.doors & self.kept):
             rooms = indices(self.home.between[i] & self.home.rooms)
             found.setdefault(i, []).extend(
-                f"to {self.home.classes[room]}" for room in rooms if self.home.ids[room] != self.view.me.room
+                f"to {printable(self.home.classes[room])}" for room in rooms if self.home.ids[room] != self.view.me.room
             )
         return {i: f" ({', '.join(facts)})" for i, facts in found.items() if facts}
 
@@ -324,13 +324,13 @@ def _by_class(home: Home, nodes: int, between: str = " | ") -> str:
     groups: dict[str, list[int]] = {}
     for i in indices(nodes):
         groups.setdefault(home.classes[i], []).append(home.ids[i])
-    return between.join(f"{name} {_runs(ids)}" for name, ids in groups.items())
+    return between.join(f"{printable(name)} {_runs(ids)}" for name, ids in groups.items())
 
 
 @lru_cache(maxsize=65_536)
 def _counted(home: Home, nodes: int) -> str:
     """Return the classes of some nodes, each with how many there are."""
-    counts = Counter(home.classes[i] for i in indices(nodes))
+    counts = Counter(printable(home.classes[i]) for i in indices(nodes))
     return ", ".join(f"{name} x{number}" if number > 1 else name for name, number in counts.items())
 
 

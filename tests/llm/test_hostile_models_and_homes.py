@@ -97,13 +97,15 @@ NAMES = (
     "a" * 3000,
 )
 
+RENAMED = ("milk", "plate", "microwave", "stove", "bookshelf", "sink", "couch", "kitchen_counter")
+
 
 @pytest.mark.parametrize("number", range(len(NAMES)))
 def test_names_of_things_are_names(tmp_path, number):
     """A home whose plates give orders: the chat keeps its form, and what the model then does is a fault."""
     document = to_release(hearth.load_graph("maple", default()))
     for node in document["nodes"]:
-        if node["class_name"] in ("milk", "plate"):
+        if node["class_name"] in RENAMED:
             node["class_name"] = NAMES[number]
     path = tmp_path / f"home{number}.json"
     path.write_text(json.dumps(document))
@@ -118,24 +120,25 @@ def test_names_of_things_are_names(tmp_path, number):
 
     def obedient(messages, seed=0, **more):
         chats.append(messages)
-        return Reply(
-            "Walk kitchen" if len(chats) == 1 else "Ignore everything and wait" if len(chats) == 3 else "Open fridge"
-        )
+        said = {1: "Walk kitchen", 3: "Ignore everything and wait"}
+        return Reply(said.get(len(chats), "Open fridge"))
 
     agent = Actor(obedient, Asking(most_turns=6))
     done = play(env.world, goal, [Player(agent, goal)], 1, limit=40)
     assert done.fault is None and len(agent.transcript.turns) == 6
     for chat in chats:
-        assert [message["role"] for message in chat] == [
-            "system",
-            *["user", "assistant"] * (len(chat) // 2 - 1),
-            "user",
-        ]
+        turns = ["user", "assistant"] * (len(chat) // 2 - 1)
+        assert [message["role"] for message in chat] == ["system", *turns, "user"]
         for message in chat:
             assert "<|" not in message["content"] and len(message["content"]) <= 2_000
             assert not set(message["content"]) & {"\x1b", "\u202e", "\x00"}
-        assert chat[-1]["content"].count("Goal: ") == 1 and "{instructions}" not in chat[0]["content"]
+        goals = [line for line in chat[-1]["content"].splitlines() if line.startswith("Goal: ")]
+        assert len(goals) == 1 and "{instructions}" not in chat[0]["content"]
     assert agent.transcript.turns[2].fault
+    shown = ("ignore_your", "im_start", "Goal: done", "p?", "{instructions}", "aaaaaaaaaa")[number]
+    assert any(shown in chat[-1]["content"] for chat in chats), "the name is in no prompt, so nothing was tested"
+    shown = NAMES[number].split()[0].split("<|")[-1][:20].rstrip("\u202e\x1b[2J")
+    assert any(shown in chat[-1]["content"] for chat in chats), "the name is in no prompt, so nothing was tested"
 
 
 SECRET = "sk-secret-of-a-run-42424242"
@@ -207,13 +210,13 @@ def test_a_model_helps_and_its_answers_verify(challenge, tmp_path):
 def test_options_of_language_models_need_one(tasks, tmp_path):
     file = tmp_path / "tasks.json"
     write(file, tasks)
-    for words, said in (
+    common = ["challenge", "run", str(file), "--out", str(tmp_path / "x.jsonl")]
+    for options, said in (
         (["--llm", "memory=3"], "no agent is one"),
         (["--main", "llm:mini", "--engine", "dask"], "asked from one machine"),
         (["--main", "llm:mini", "--llm", "heat=3"], "not a setting of language models"),
         (["--main", "llm:"], "is not `llm:MODEL@URL`"),
     ):
-        words = ["challenge", "run", str(file), "--out", str(tmp_path / "x.jsonl"), *words]
-        result = CliRunner().invoke(cli.app, words)
+        result = CliRunner().invoke(cli.app, [*common, *options])
         assert result.exit_code == 1 and said in result.output, result.output
     assert not (tmp_path / "x.jsonl").exists()
