@@ -64,6 +64,7 @@ def need_models(names: Sequence[str], engine: str, *, given: bool) -> None:
 def described(name: str, number: int, asking: Asking, means: Means) -> dict[str, Any]:
     """Return a language model as results describe it: with everything that decides what it is asked."""
     model, url = read_name(name)
+    url = dict(means.given)[name].url if name in dict(means.given) else url
     words, prompt = protocol(), page("helper" if number else "actor")
     prices = {} if means.prices is None else {"price_in": means.prices[0], "price_out": means.prices[1]}
     return {

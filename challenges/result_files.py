@@ -12,7 +12,7 @@ from typing import Any
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Record
 from hearth.challenges.language_agents import are_transcripts, is_described
-from hearth.challenges.metrics import METRICS, Outcomes, by_task
+from hearth.challenges.metrics import METRICS, Outcomes, by_task, summary
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -126,6 +126,10 @@ class Results:
     def finished(self, helped: bool) -> Outcomes:
         """Return the same, without the episodes in which an agent could not go on: these are no scores."""
         return by_task((each.task, each.metrics) for each in self.records if each.helped == helped and each.end is None)
+
+    def summary(self) -> dict[str, Any]:
+        """Return all metrics as means over tasks, of the episodes in which every agent could go on."""
+        return summary(self.finished(False), self.finished(True) if self.header.helped[-1] else {})
 
     @property
     def unfinished(self) -> list[Record]:

@@ -66,6 +66,7 @@ class Means:
         cache: the file of replies; in memory where None.
         prices: of a million tokens of prompts and of replies.
         budget: the most that all replies in the cache may cost; None for no limit.
+        given: endpoints that stand for names, from Python.
     """
 
     seconds: float = 120.0
@@ -76,6 +77,7 @@ class Means:
     cache: Path | None = None
     prices: tuple[float, float] | None = None
     budget: float | None = None
+    given: tuple[tuple[str, Any], ...] = ()
 
     def cost(self, tokens_in: int, tokens_out: int) -> float:
         """Return what tokens cost; 0 where no prices are given."""

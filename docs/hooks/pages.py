@@ -36,7 +36,7 @@ ENTRY_POINTS = {
         "hearth:TextHome", "hearth:TextHomes",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
-    "Language models": ("hearth:Endpoint",),
+    "Language models": ("hearth:Endpoint", "hearth:run_tasks", "hearth.simulation.actions.legal:Legal.grammar"),
     "Goals and checks": (
         "hearth.challenges.instruction_writer:instruction",
         "hearth.challenges.instruction_reader:read_instruction",

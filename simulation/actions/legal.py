@@ -85,6 +85,11 @@ class Legal:
 
         Raises:
             HearthError: BAD_ARGUMENT: there is no such form; EMPTY: nothing can be done.
+
+        Examples:
+            >>> legal = env.legal(0)
+            >>> legal.grammar("gbnf").splitlines()[0], "Walk" in legal.grammar("regex")
+            ('root ::= line', True)
         """
         return written(legal_grammar(self.home, self.masks, names, wait=wait), form)
 
