@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sqlite3
 import threading
+import time
 from collections import Counter
 from dataclasses import astuple, dataclass, fields, replace
 from pathlib import Path
@@ -76,11 +77,23 @@ class AnswerCache:
                 str(file or IN_MEMORY), BUSY_SECONDS, isolation_level=None, check_same_thread=False
             )
             if file is not None:
-                self._connection.execute("PRAGMA journal_mode = WAL")
+                self._share()
             self._need_ours()
             self._connection.executescript(_TABLES)
         except sqlite3.DatabaseError as error:
             raise self._fault(error) from error
+
+    def _share(self) -> None:
+        """Let several processes write; SQLite does not wait by itself for another that is about to do the same."""
+        until = time.monotonic() + BUSY_SECONDS
+        while True:
+            try:
+                self._connection.execute("PRAGMA journal_mode = WAL")
+                return
+            except sqlite3.OperationalError:
+                if time.monotonic() > until:
+                    raise
+                time.sleep(0.05)
 
     def _need_ours(self) -> None:
         (version,) = self._connection.execute("PRAGMA user_version").fetchone()

@@ -234,9 +234,18 @@ def _http() -> Any:
     return library("httpx2").Client(follow_redirects=False)
 
 
-@lru_cache(maxsize=16)
+_OPENING = threading.Lock()
+"""Threads that ask for an endpoint at the same time get one: two would not share a budget."""
+
+
 def endpoint_of(name: str, asking: Asking, means: Means) -> Endpoint:
     """Return the endpoint of `llm:MODEL@URL`, one for all episodes of a process; errors as of `Endpoint`."""
+    with _OPENING:
+        return _endpoint_of(name, asking, means)
+
+
+@lru_cache(maxsize=16)
+def _endpoint_of(name: str, asking: Asking, means: Means) -> Endpoint:
     for other, given in means.given:
         if other == name:
             found: Endpoint = given

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
+import subprocess
+import sys
 import threading
 import time
 from email.utils import formatdate
@@ -12,6 +14,7 @@ from lying_server import dripping, endless, gone, half, raw, reply, serving, sil
 
 from hearth import Endpoint
 from hearth.llm.addresses import LOCAL, checked_url, key_for, read_name
+from hearth.llm.answer_cache import AnswerCache
 from hearth.llm.settings import Asking, Means, read_settings
 from hearth.schemas.diagnostics import HearthError
 
@@ -255,6 +258,37 @@ def test_the_budget_is_kept(asked, tmp_path):
         assert more("prompt 0") == "wait" and len(server.asked) == number, "what is kept costs nothing"
         more("one more")
     assert len(server.asked) == number + 1
+
+
+def test_threads_that_begin_together_share_an_endpoint(tmp_path):
+    """Two endpoints would not share a budget, and would lock each other out of the file."""
+    from hearth.llm.endpoint import endpoint_of
+
+    found, start = [], threading.Barrier(8)
+
+    def begin():
+        start.wait()
+        found.append(endpoint_of("llm:mini", Asking(), Means(cache=tmp_path / "shared.sqlite")))
+
+    threads = [threading.Thread(target=begin) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8 and len(set(map(id, found))) == 1
+
+
+def test_processes_that_begin_together_share_a_cache(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from hearth.llm.answer_cache import AnswerCache\n"
+        "from hearth.llm.replies import Reply\n"
+        "cache = AnswerCache(Path(sys.argv[1]))\n"
+        "[cache.put(f'{sys.argv[2]}-{n}', 'mini', Reply('x')) for n in range(20)]"
+    )
+    words = [sys.executable, "-c", code, str(tmp_path / "shared.sqlite")]
+    running = [subprocess.Popen([*words, str(n)]) for n in range(4)]
+    assert [process.wait() for process in running] == [0] * 4
+    assert AnswerCache(tmp_path / "shared.sqlite").spent("mini").replies == 80
 
 
 # Keys
