@@ -29,12 +29,12 @@ FORMAT = 1
 
 _COLUMNS = [each.name for each in fields(Reply) if each.name != "kept"]
 
-_TABLES = f"""
-CREATE TABLE IF NOT EXISTS answers (key TEXT PRIMARY KEY, model TEXT, {", ".join(_COLUMNS)}) WITHOUT ROWID;
-CREATE TABLE IF NOT EXISTS failed_tries (model TEXT, reason TEXT, tries INTEGER, PRIMARY KEY (model, reason));
-CREATE TABLE IF NOT EXISTS obeyed (model TEXT, url TEXT, facts TEXT, PRIMARY KEY (model, url));
-PRAGMA user_version = {FORMAT};
-"""
+_TABLES = (
+    f"CREATE TABLE IF NOT EXISTS answers (key TEXT PRIMARY KEY, model TEXT, {', '.join(_COLUMNS)}) WITHOUT ROWID",
+    "CREATE TABLE IF NOT EXISTS failed_tries (model TEXT, reason TEXT, tries INTEGER, PRIMARY KEY (model, reason))",
+    "CREATE TABLE IF NOT EXISTS obeyed (model TEXT, url TEXT, facts TEXT, PRIMARY KEY (model, url))",
+    f"PRAGMA user_version = {FORMAT}",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,8 +78,7 @@ class AnswerCache:
             )
             if file is not None:
                 self._share()
-            self._need_ours()
-            self._connection.executescript(_TABLES)
+            self._make_tables()
         except sqlite3.DatabaseError as error:
             raise self._fault(error) from error
 
@@ -94,6 +93,18 @@ class AnswerCache:
                 if time.monotonic() > until:
                     raise
                 time.sleep(0.05)
+
+    def _make_tables(self) -> None:
+        """Make the tables, or find them; one process at a time, so that none sees half of them."""
+        self._connection.execute("BEGIN IMMEDIATE")
+        try:
+            self._need_ours()
+            for statement in _TABLES:
+                self._connection.execute(statement)
+        except sqlite3.DatabaseError:
+            self._connection.execute("ROLLBACK")
+            raise
+        self._connection.execute("COMMIT")
 
     def _need_ours(self) -> None:
         (version,) = self._connection.execute("PRAGMA user_version").fetchone()
