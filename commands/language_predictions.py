@@ -39,6 +39,7 @@ def predict(
     shots: int,
     repair: bool,
     originals: bool,
+    limit: int | None,
     as_json: bool,
 ) -> None:
     """Write predictions, and print the counts; the status is 1 if texts have no answer."""
@@ -47,8 +48,9 @@ def predict(
 
     with bar("executions", model.spending) as seen:
         facts = predict_part(
-            model, dataset, out, split, part, shots=shots, repaired=repair, originals=originals, seen=seen
-        )
+            model, dataset, out, split, part,
+            shots=shots, repaired=repair, originals=originals, limit=limit, seen=seen,
+        )  # fmt: skip
     if as_json:
         output.emit({"out": out, **facts})
     else:

@@ -93,6 +93,7 @@ def predict(
     constrained: bool = False,
     originals: bool = False,
     sketches: str = "annotated",
+    limit: int | None = None,
     shots: int = 0,
     llm: list[str] | None = None,
     cache: Path | None = None,
@@ -113,7 +114,7 @@ def predict(
     """
     if model.startswith("llm:"):
         asked = language_predictions.asked_model(model, out, llm, cache, prices, budget, constrained)
-        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, as_json)
+        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, limit, as_json)
         return
     language_predictions.refuse_options(shots, llm, cache, prices, budget)
     from hearth.commands.progress_line import bar
@@ -131,6 +132,7 @@ def predict(
             is_constrained=constrained,
             originals=originals,
             sketches=sketches,
+            limit=limit,
             seen=seen,
         )
     output.say(f"{output.counted(count, 'prediction')} in {out}", {"out": out, "predictions": count}, as_json)

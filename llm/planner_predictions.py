@@ -27,6 +27,7 @@ def predict_part(
     shots: int = 0,
     repaired: bool = False,
     originals: bool = False,
+    limit: int | None = None,
     seen: Seen = unseen,
 ) -> dict[str, Any]:
     """Write the programs that a language model predicts for a part of a dataset, and return the counts.
@@ -42,6 +43,7 @@ def predict_part(
         shots: examples before each request, of the split's training part.
         repaired: bind and repair each program in its environment, and leave out the steps that can't run there.
         originals: leave out executions of augmented programs.
+        limit: the first executions only.
         seen: reports progress.
 
     Raises:
@@ -54,7 +56,7 @@ def predict_part(
             Code.BAD_ARGUMENT, message, suggestion=f"0 to {MOST_SHOTS}, of a split with training programs"
         )
     dataset = Dataset.open(folder)
-    names = names_asked(dataset, split, part, originals)
+    names = names_asked(dataset, split, part, originals)[:limit]
     known: Sequence[Example] = examples(dataset, split, "train", originals=True) if shots else ()
     planner = LanguagePlanner(endpoint, dataset.knowledge, known, shots)
     found = _predicted(planner, dataset, names, seen)

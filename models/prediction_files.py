@@ -132,6 +132,7 @@ def predict_part(
     is_constrained: bool = False,
     originals: bool = False,
     sketches: str = ANNOTATED,
+    limit: int | None = None,
     seen: Seen = unseen,
 ) -> int:
     """Write the predictions of a trained model for a part of a split; their number.
@@ -146,6 +147,7 @@ def predict_part(
         is_constrained: decode with the engine in the loop; models of sketches always do.
         originals: leave out executions of augmented programs.
         sketches: `annotated` or `inferred`: which go before the others.
+        limit: the first executions only.
         seen: reports progress.
 
     Raises:
@@ -154,7 +156,7 @@ def predict_part(
     """
     dataset = Dataset.open(folder)
     name, trained = restore(model)
-    names = names_asked(dataset, split, part, originals)
+    names = names_asked(dataset, split, part, originals)[:limit]
     if split and not part.startswith("train"):
         refuse_seen(model, dataset, split, names)
     text = MODELS[name].input == "text"
