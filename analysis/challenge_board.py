@@ -20,7 +20,7 @@ from hearth.challenges.metrics import CONFIDENT, Mean, Outcomes, mean, of_tasks,
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.challenges.verification import read_whole, verify
-from hearth.llm.settings import MILLION
+from hearth.llm.language_settings import MILLION
 from hearth.llm.turns import faults_of
 from hearth.simulation.hazards import hazards_among
 from hearth.storage.files import file_digest

@@ -21,7 +21,7 @@ from hearth.challenges.episode_loop import Player
 from hearth.challenges.language_agents import WAITING, described, need_model, player_of
 from hearth.kb.knowledge import Knowledge
 from hearth.llm.addresses import is_model
-from hearth.llm.settings import Asking, Means
+from hearth.llm.language_settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

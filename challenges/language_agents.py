@@ -10,9 +10,9 @@ from hearth.envs.text_protocol_settings import protocol
 from hearth.llm.actor import Actor
 from hearth.llm.addresses import is_model, read_name
 from hearth.llm.endpoint import endpoint_of
+from hearth.llm.language_settings import Asking, Means
 from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import page
-from hearth.llm.settings import Asking, Means
 from hearth.llm.turns import is_transcript
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -16,8 +16,8 @@ from hearth.challenges.language_agents import WAITING, same_words
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
 from hearth.llm.actor import Actor
+from hearth.llm.language_settings import Asking
 from hearth.llm.recorded_answers import RecordedAnswers
-from hearth.llm.settings import Asking
 from hearth.llm.turns import turns_of
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal

@@ -12,7 +12,7 @@ from hearth.challenges.task_files import Suite, read
 from hearth.kb.loading.load import default
 from hearth.llm.addresses import SCHEME
 from hearth.llm.endpoint import OWN, Endpoint
-from hearth.llm.settings import Asking, Means
+from hearth.llm.language_settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

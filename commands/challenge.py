@@ -127,7 +127,7 @@ def run_tasks(
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
-    from hearth.llm.settings import kept_next_to, read_settings
+    from hearth.llm.language_settings import kept_next_to, read_settings
 
     suite = read(file)
     if proposals not in ("", "exact"):

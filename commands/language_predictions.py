@@ -24,7 +24,7 @@ def asked_model(
 ) -> "Endpoint":
     """Return the language model of a command line; errors as of `read_settings` and `Endpoint`."""
     from hearth.llm.endpoint import endpoint_of
-    from hearth.llm.settings import kept_next_to, read_settings
+    from hearth.llm.language_settings import kept_next_to, read_settings
 
     asking, means = read_settings(llm or (), cache or kept_next_to(out, (name,)), prices, budget)
     return endpoint_of(name, replace(asking, constrained=asking.constrained or constrained), means)

@@ -28,8 +28,8 @@ def probe(name: str, *, cache: Path | None = None, as_json: bool = False) -> Non
       hearth llm probe llm:smollm2 --json
     """
     from hearth.llm.endpoint import endpoint_of
+    from hearth.llm.language_settings import Asking, Means
     from hearth.llm.probe import probe as found_by
-    from hearth.llm.settings import Asking, Means
 
     found = found_by(endpoint_of(name, Asking(), Means(cache=cache)))
     if as_json:

@@ -18,10 +18,10 @@ from hearth.envs.compact_text import compact, printable, wanted_nodes
 from hearth.envs.text_protocol_settings import Protocol as Words
 from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import reason
+from hearth.llm.language_settings import Asking
 from hearth.llm.legal_commands import constraint
 from hearth.llm.prompt_pages import PromptPage, page
 from hearth.llm.replies import Reply
-from hearth.llm.settings import Asking
 from hearth.llm.turns import Transcript, Turn
 from hearth.schemas.agent_messages import ASK, TELL
 from hearth.schemas.diagnostics import Diagnostic, HearthError

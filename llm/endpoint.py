@@ -13,10 +13,10 @@ from urllib.parse import urlsplit
 
 from hearth.llm.addresses import checked_url, key_for, read_name, without_key
 from hearth.llm.answer_cache import AnswerCache, Spent
+from hearth.llm.language_settings import Asking, Means
 from hearth.llm.purse import Purse
 from hearth.llm.replies import Reply, read_reply
 from hearth.llm.requests_with_retries import Failed, post, with_retries
-from hearth.llm.settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library

@@ -8,7 +8,7 @@ from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.llm.endpoint import Endpoint
-from hearth.llm.planner import MOST_SHOTS, LanguagePlanner
+from hearth.llm.language_planner import MOST_SHOTS, LanguagePlanner
 from hearth.models.interface import Steps
 from hearth.models.prediction_files import completed, names_asked, write
 from hearth.models.text_examples import Example, examples, requests

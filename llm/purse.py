@@ -6,8 +6,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from hearth.llm.language_settings import Means
 from hearth.llm.replies import Reply
-from hearth.llm.settings import Means
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 

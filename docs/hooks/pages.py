@@ -16,7 +16,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web",
+    "pipelines", "models", "agents", "envs", "llm", "challenges", "interop", "analysis", "studies", "web",
 )  # fmt: skip
 
 ENTRY_POINTS = {

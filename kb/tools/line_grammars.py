@@ -192,7 +192,7 @@ def _branches(at: Mapping[str, Any]) -> str:
 
 
 def _run(letter: str, below: Mapping[str, Any]) -> str:
-    """Return a letter and all that follows, as long as only one thing may: a long text is no deep recursion."""
+    """Return a letter and all that follows, as long as only one thing may: a long text needs no recursion."""
     found = [_escaped(letter)]
     while len(below) == 1 and "" not in below:
         ((letter, below),) = below.items()

@@ -14,7 +14,7 @@ MOST_STEPS = 30
 """Steps of a program that a grammar lets be written, at most; people's programs have 11 on average."""
 
 NUMBERS = tuple("123456789")
-"""The instances of a class that a program tells apart."""
+"""The instances of a class in a program."""
 
 NUMBER: tuple[Part, ...] = ("> (", NUMBERS, ")")
 """The end of an argument."""

@@ -16,7 +16,7 @@ from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite
 from hearth.kb.loading.load import default
-from hearth.llm.settings import Asking, Means
+from hearth.llm.language_settings import Asking, Means
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from lying_server import dripping, endless, gone, half, raw, reply, serving, sil
 from hearth import Endpoint
 from hearth.llm.addresses import LOCAL, checked_url, key_for, read_name
 from hearth.llm.answer_cache import AnswerCache
-from hearth.llm.settings import Asking, Means, read_settings
+from hearth.llm.language_settings import Asking, Means, read_settings
 from hearth.schemas.diagnostics import HearthError
 
 HELLO = [{"role": "user", "content": "hello"}]

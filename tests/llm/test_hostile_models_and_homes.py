@@ -20,8 +20,8 @@ from hearth.challenges.task_files import suite, write
 from hearth.challenges.verification import verify
 from hearth.kb.loading.load import default
 from hearth.llm.actor import Actor
+from hearth.llm.language_settings import Asking, Means
 from hearth.llm.replies import Reply
-from hearth.llm.settings import Asking, Means
 from hearth.schemas.graph import to_release
 from hearth.simulation.env import Env
 from hearth.simulation.goal_text import read_goal

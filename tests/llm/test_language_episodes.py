@@ -16,7 +16,7 @@ from hearth.challenges.task_files import suite
 from hearth.challenges.verification import verify
 from hearth.envs.text_homes import TextHomes
 from hearth.kb.loading.load import default
-from hearth.llm.settings import Asking, Means
+from hearth.llm.language_settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 
 ALL = Asking(memory=1_000)

@@ -19,8 +19,8 @@ from typer.testing import CliRunner
 import hearth
 from hearth import Endpoint, cli
 from hearth.kb.action_grammar import check
-from hearth.llm.planner import LanguagePlanner
-from hearth.llm.settings import Asking, Means
+from hearth.llm.language_planner import LanguagePlanner
+from hearth.llm.language_settings import Asking, Means
 from hearth.models.interface import Request
 from hearth.models.text_examples import Example
 from hearth.schemas.program import Program

@@ -18,8 +18,8 @@ from hearth.challenges.task_files import suite
 from hearth.challenges.verification import verify
 from hearth.kb.loading.load import default
 from hearth.llm.constraints import FORMS, chosen, keeps
+from hearth.llm.language_settings import Asking, Means
 from hearth.llm.probe import ODD, grammar_facts, probe
-from hearth.llm.settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 
 

@@ -21,10 +21,10 @@ from hearth.envs.agent_answers import by_text
 from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.llm.constraints import FORMS
+from hearth.llm.language_planner import LanguagePlanner
+from hearth.llm.language_settings import Asking, Means
 from hearth.llm.local_server import SERVER, SMALL, start
-from hearth.llm.planner import LanguagePlanner
 from hearth.llm.probe import probe
-from hearth.llm.settings import Asking, Means
 from hearth.models.interface import Request
 from hearth.schemas.program import Program
 from hearth.simulation.actions.legal_grammar import legal_grammar
