@@ -27,6 +27,7 @@ from hearth.schemas.agent_messages import ASK, TELL
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.goals import Goal
 from hearth.schemas.program import Step
+from hearth.schemas.rng import derive
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.observation.views import View
 
@@ -147,12 +148,13 @@ class Actor:
         messages = list(self._chat(said))
         self.transcript.prompt(messages)
         more, keeps = constraint(self._form, legal, self._words) if self._form else ({}, None)
-        reply = self._ask(messages, self._seed, **more)
+        seed = derive(self._seed, "turn", len(self.transcript.turns)) if self._asking.temperature > 0 else 0
+        reply = self._ask(messages, seed, **more)
         text = reply.text[: self._words.most_answer + 1]
         choice, self._fault = self._understood(text, view, legal)
         code = str(self._fault.code) if self._fault is not None else ""
         disobeyed = keeps is not None and not keeps(text)
-        self.transcript.add(Turn(view.tick, text, code), reply, disobeyed=disobeyed)
+        self.transcript.add(Turn(view.tick, text, code), reply, [messages, more, seed], disobeyed=disobeyed)
         self._history.append((said, self._remembered(text)))
         return choice
 

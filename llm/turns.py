@@ -36,7 +36,8 @@ class Transcript:
 
     Attributes:
         turns: in their order.
-        tokens_in, tokens_out, seconds, tries: sums over the replies, as the server says them.
+        tokens_in, tokens_out, seconds, tries: sums over the replies, as the server says them; a request that is made
+            again in the episode has the reply that is kept, and counts once.
         estimated: replies whose tokens the server did not count.
         cut: replies that ended because they were too long.
         disobeyed: replies that are outside the grammar that was sent.
@@ -53,6 +54,7 @@ class Transcript:
     disobeyed: int = 0
     constraint: str = ""
     _asked: Any = field(default_factory=lambda: blake2b(digest_size=16))
+    _requests: set[bytes] = field(default_factory=set)
 
     def prompt(self, messages: Sequence[Mapping[str, Any]]) -> None:
         """Add a prompt to the digest of all prompts."""
@@ -60,16 +62,22 @@ class Transcript:
 
         self._asked.update(orjson.dumps(list(messages), option=orjson.OPT_SORT_KEYS))
 
-    def add(self, turn: Turn, reply: Reply, *, disobeyed: bool = False) -> None:
-        """Add an answer."""
+    def add(self, turn: Turn, reply: Reply, request: Sequence[Any], *, disobeyed: bool = False) -> None:
+        """Add an answer to a request."""
+        import orjson
+
         self.turns.append(turn)
+        self.cut += reply.cut
+        self.disobeyed += disobeyed
+        key = blake2b(orjson.dumps(list(request), option=orjson.OPT_SORT_KEYS), digest_size=16).digest()
+        if key in self._requests:
+            return
+        self._requests.add(key)
         self.tokens_in += reply.tokens_in
         self.tokens_out += reply.tokens_out
         self.seconds += reply.seconds
         self.tries += reply.tries
         self.estimated += not reply.counted
-        self.cut += reply.cut
-        self.disobeyed += disobeyed
 
     def as_json(self) -> dict[str, Any]:
         """Return the transcript as result files have it."""

@@ -87,6 +87,20 @@ def test_the_episodes_verify_without_the_model(results):
     assert verify(found, str(out), default) == []
 
 
+@pytest.mark.parametrize(("temperature", "requests"), [(0.0, 1), (0.7, 5)])
+def test_a_model_that_gets_nowhere_is_asked_anew_where_its_answers_are_drawn(tasks, tmp_path, temperature, requests):
+    """Without memory the same prompt comes again: its reply is kept and counts once, unless another seed is sent."""
+    few = replace(tasks, tasks=tasks.tasks[:1])
+    asking = Asking(temperature, memory=0, most_turns=6)
+    with serving("Fly") as (url, server):
+        found = run(few, Lineup(f"llm:mini@{url}", asking=asking), 1, tmp_path / "x.jsonl", default)
+    said = next(iter(found.records)).language["0"]
+    assert len(said["turns"]) == 6 and len(server.asked) == 1 + requests, "the first prompt has no `Last:`"
+    assert said["tokens_in"] == 10 * len(server.asked) == 10 * said["tries"]
+    assert len({body.get("seed") for body in server.asked}) == (1 if temperature == 0 else 6)
+    assert verify(found, "x", default) == []
+
+
 def changed(results, tmp_path, change):
     """The file with a changed episode, signed by whoever knows how lines are signed."""
     out, found, _ = results
