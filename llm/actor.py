@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from hearth.agents.protocol import Choice
-from hearth.envs.agent_answers import SAYING, by_words
+from hearth.envs.agent_answers import SAYING, Fault, by_words
 from hearth.envs.answer_forms import WALK, command_line, read_answer
 from hearth.envs.compact_text import compact, printable, wanted_nodes
 from hearth.envs.text_protocol_settings import Protocol as Words
@@ -63,6 +63,7 @@ class Actor:
 
     Attributes:
         transcript: the answers of the episode.
+        faults: answers that could not be used.
 
     Args:
         ask: gives replies.
@@ -93,6 +94,7 @@ class Actor:
     def reset_state(self) -> None:
         """Forget the episode."""
         self.transcript = Transcript(constraint=self._form)
+        self.faults: list[Fault] = []
         self._goal, self._seed = Goal(), 0
         self._told = False
         self._walk: _Walk | None = None
@@ -153,6 +155,8 @@ class Actor:
         text = reply.text[: self._words.most_answer + 1]
         choice, self._fault = self._understood(text, view, legal)
         code = str(self._fault.code) if self._fault is not None else ""
+        if self._fault is not None:
+            self.faults.append(Fault(view.tick, self._fault))
         disobeyed = keeps is not None and not keeps(text)
         self.transcript.add(Turn(view.tick, text, code), reply, [messages, more, seed], disobeyed=disobeyed)
         self._history.append((said, self._remembered(text)))

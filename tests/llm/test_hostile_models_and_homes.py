@@ -207,6 +207,18 @@ def test_a_model_helps_and_its_answers_verify(challenge, tmp_path):
     assert "agent 1" in fault.message
 
 
+def test_a_model_plays_in_a_home():
+    answers = iter(["Walk kitchen", "Fly away", "Walk fridge", "Open fridge", "Grab milk 142"])
+    with serving(lambda body: next(answers, "wait")) as (url, _):
+        words = ["play", "maple", "--goal", "HOLDS(agent, milk)", "--agent", f"0=llm:mini@{url}", "--json"]
+        result = CliRunner().invoke(cli.app, words)
+        assert result.exit_code == 0, result.output
+        found = json.loads(result.stdout)
+        third = CliRunner().invoke(cli.app, [*words[:4], "--agent", f"2=llm:mini@{url}"])
+    assert found["reached"] and [fault["code"] for fault in found["agents"][0]["faults"]] == ["UNKNOWN_ACTION"]
+    assert third.exit_code == 2 and "only agents 0 and 1" in third.output
+
+
 def test_options_of_language_models_need_one(tasks, tmp_path):
     file = tmp_path / "tasks.json"
     write(file, tasks)
