@@ -104,7 +104,7 @@ def _row(path: Path, results: Results, faults: Sequence[str]) -> dict[str, Any]:
         "speedup_se": figures["speedup_se"] if helped else None,
         "reward": figures["reward"],
         "hazards": None,
-        **_language(results),
+        **language_figures(results),
         "verified": not faults,
         "differences": list(faults),
     }
@@ -114,7 +114,7 @@ def _half(error: float | int | None) -> float | None:
     return None if error is None else CONFIDENT * error
 
 
-def _language(results: Results) -> dict[str, Any]:
+def language_figures(results: Results) -> dict[str, Any]:
     """Return the figures of the language models of a run; None where there are none."""
     described = results.header.language
     names = ("model", "protocol", "protocol_fingerprint", "prompt", "prompt_fingerprint", "constrained")

@@ -86,6 +86,11 @@ def player_of(name: str, asking: Asking, means: Means, instruction: str, message
     return Actor(endpoint.ask, asking, instruction, messages, number, form)
 
 
+def spending(names: Sequence[str], asking: Asking, means: Means) -> str:
+    """Return the tokens and the cost of a run's language models until now, for a progress line; "" for none."""
+    return ", ".join(endpoint_of(name, asking, means).spending() for name in names if is_model(name))
+
+
 def transcripts(players: Sequence[Any]) -> dict[str, Any] | None:
     """Return the answers of the language models among the guarded agents of an episode; None where there are none."""
     agents = [getattr(player.agent, "agent", None) for player in players]

@@ -121,7 +121,7 @@ def run_tasks(
       hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
     from hearth.challenges.episode_agents import Lineup
-    from hearth.challenges.language_agents import need_models
+    from hearth.challenges.language_agents import need_models, spending
     from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
@@ -135,7 +135,10 @@ def run_tasks(
     asking, means = read_settings(llm or (), cache or kept_next_to(out, (main, helper)), prices, budget)
     lineup = Lineup(main, helper, goal, seconds, asking, means)
     need_models(lineup.names, engine, given=bool(llm or cache or prices or budget is not None))
-    with bar("episodes") as seen, spread_over(engine, workers, scheduler) as over:
+    with (
+        bar("episodes", lambda: spending(lineup.names, asking, means)) as seen,
+        spread_over(engine, workers, scheduler) as over,
+    ):
         found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
     challenge_output.print_results(found, as_json)
     output.status(len(found.unfinished), strict=True)
