@@ -10,7 +10,7 @@ from hearth.envs.text_protocol_settings import protocol
 from hearth.llm.actor import Actor
 from hearth.llm.addresses import is_model, read_name
 from hearth.llm.endpoint import endpoint_of
-from hearth.llm.language_settings import Asking, Means
+from hearth.llm.language_settings import BOUNDS, Asking, Means
 from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import page
 from hearth.llm.turns import is_transcript
@@ -23,6 +23,9 @@ WAITING = 86_400.0
 
 AGENTS = ("0", "1")
 """The numbers of agents, as keys of JSON."""
+
+COUNTED = ("memory", "most_turns")
+"""The settings by which recorded answers are read again."""
 
 MOST_DESCRIBED = 40
 """Facts about a language model in a file of results, at most."""
@@ -108,7 +111,9 @@ def _is_one(given: Any) -> bool:
         isinstance(given, dict)
         and len(given) <= MOST_DESCRIBED
         and all(isinstance(value, (str, int, float, bool)) and len(str(value)) < 500 for value in given.values())
-        and {"model", "protocol_fingerprint", "prompt_fingerprint", "memory", "most_turns"} <= set(given)
+        and {"model", "protocol_fingerprint", "prompt_fingerprint", *COUNTED} <= set(given)
+        and all(type(given[name]) is int and BOUNDS[name][0] <= given[name] <= BOUNDS[name][1] for name in COUNTED)
+        and all(type(given.get(name, 0)) in (int, float) for name in ("price_in", "price_out"))
     )
 
 

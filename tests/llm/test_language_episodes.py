@@ -154,6 +154,38 @@ def test_a_changed_answer_is_found(results, tmp_path, change, message):
     assert re.search(message, fault.message), fault.message
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda said: said["0"].update(memory="many"), lambda said: said["0"].update(memory=-1),
+        lambda said: said["0"].update(most_turns=True), lambda said: said["0"].update(price_in="free"),
+        lambda said: said.update({"7": {}}), lambda said: said["0"].pop("protocol_fingerprint"),
+        lambda said: said["0"].update(model=["x"]), lambda said: said["0"].update(model="x" * 9_000),
+    ],
+)  # fmt: skip
+def test_a_header_of_somebody_else_is_read_with_care(results, tmp_path, change):
+    some = results[0].read_bytes().splitlines(keepends=True)
+    header = json.loads(some[0])
+    change(header["agents"]["language"])
+    path = tmp_path / "header.jsonl"
+    path.write_bytes(b"".join([json.dumps(header).encode() + b"\n", *some[1:]]))
+    with pytest.raises(HearthError, match="BAD_JSON"):
+        read(path)
+
+
+def test_a_prompt_of_other_words_is_said(results, tmp_path):
+    """An episode of another protocol cannot be read again by this one."""
+    from hearth.challenges.result_files import first_line
+
+    found = results[1]
+    described = {"0": {**found.header.language["0"], "prompt_fingerprint": "0" * 16}}
+    header = replace(found.header, language=described)
+    path = tmp_path / "other.jsonl"
+    path.write_bytes(first_line(header) + b"".join(line(header, each) for each in found.records))
+    faults = verify(read(path), str(path), default)
+    assert len(faults) == 3 and "another protocol" in faults[0].message
+
+
 def test_a_changed_line_is_damage(results, tmp_path):
     path = tmp_path / "damaged.jsonl"
     path.write_bytes(results[0].read_bytes().replace(b"I think.", b"I knew..", 1))
