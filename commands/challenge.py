@@ -105,8 +105,7 @@ def run_tasks(
     writes lines (docs/examples/agents.md). A run that was stopped goes on where it was; episodes in which an agent
     could not go on are no scores: they are played once more, counted apart, and the status is 1. Helpers: none, random,
     hp, hp_true, hp_timed, hp_random, oracle_b, oracle_ab, ..., or an agent of your own, as FILE.py:CLASS. Either may be
-    a language model, llm:MODEL@URL (docs/language-models.md): its replies are kept in --cache, and nothing is asked
-    twice.
+    a language model, llm:MODEL@URL (docs/language-models.md); its replies are kept in --cache.
 
     \b
     Examples:
@@ -114,7 +113,6 @@ def run_tasks(
       hearth challenge run test-1.json --main "node agent.js" --out node.jsonl
       hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
       hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
-      hearth challenge run tasks.json --main llm:smollm2@http://127.0.0.1:8080/v1 --out smollm2.jsonl
       hearth challenge run tasks.json --main llm:MODEL@URL --prices 0.15,0.60 --budget 2 --out model.jsonl -j 16
       hearth challenge run owah.json --helper llm:smollm2 --llm memory=4 --out helped.jsonl
       hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
