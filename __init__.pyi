@@ -1,5 +1,7 @@
 from duckdb import DuckDBPyConnection
 
+from hearth.challenges.language_runs import run_tasks as run_tasks
+from hearth.challenges.task_files import suite as suite
 from hearth.datasets.dataset import Dataset as Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export
@@ -15,6 +17,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_understanding import understand as understand
 from hearth.kb.tools.find import Query as Query
 from hearth.kb.tools.find import find as find
+from hearth.llm.endpoint import Endpoint as Endpoint
 from hearth.pipelines.build import build as build
 from hearth.pipelines.readers.plans_in_words import parse_steps as parse_steps
 from hearth.rendering.film.execution_keyframes import trajectory_of as trajectory_of

@@ -70,6 +70,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
         "augmented": Entry("augmented:augmented", "Compare an augmented dataset with the thesis's, table 5.1."),
         "score": Entry("score:app", "Score predicted programs against references."),
         "model": Entry("model:app", "Models that write programs: train, predict, score, show."),
+        "llm": Entry("llm:app", "Language models: probe a server, serve a small model."),
         "corpus": Entry("corpus:app", "Descriptions and programs: statistics, synthesis, ratings, error detection."),
     },
     "Try a program": {

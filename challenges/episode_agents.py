@@ -6,7 +6,7 @@ import importlib.util
 from collections.abc import Callable
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +18,10 @@ from hearth.challenges.agent_standard_streams import StandardDescriptors
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.command_agents import CommandAgent, is_command
 from hearth.challenges.episode_loop import Player
+from hearth.challenges.language_agents import WAITING, described, need_model, player_of
 from hearth.kb.knowledge import Knowledge
+from hearth.llm.addresses import is_model
+from hearth.llm.language_settings import Asking, Means
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
@@ -41,16 +44,32 @@ class Lineup:
     """The agents that take part.
 
     Attributes:
-        main: the agent that acts, and is helped: a name, `FILE.py:CLASS`, or the command of a program.
-        helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent.
+        main: the agent that acts, and is helped: a name, `FILE.py:CLASS`, the command of a program, `llm:MODEL@URL`.
+        helper: the helper's name; `none`, or `FILE.py:CLASS` for the user's own agent, or `llm:MODEL@URL`.
         goal: the helper's goal; as its row in the registry says where empty.
-        seconds: an agent may think about a tick as long as this.
+        seconds: an agent may think about a tick as long as this; a language model has its own time.
+        asking: what language models are asked with.
+        means: by which they are asked; they change no answer.
     """
 
     main: str = "human_like"
     helper: str = NOBODY
     goal: str = ""
     seconds: float = SECONDS
+    asking: Asking = field(default_factory=Asking)
+    means: Means = field(default_factory=Means, compare=False)
+
+    @property
+    def language(self) -> dict[str, dict[str, Any]]:
+        """Return its language models by the agent's number, as results describe them."""
+        return {
+            str(n): described(name, n, self.asking, self.means) for n, name in enumerate(self.names) if is_model(name)
+        }
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Return the names of its agents."""
+        return self.main, self.helper
 
     @property
     def own(self) -> tuple[str, ...]:
@@ -70,19 +89,21 @@ class Lineup:
             HearthError: BAD_ARGUMENT: there is no such agent or goal; MISSING_FILE.
         """
         known = HELPERS.get(self._helper)
+        for name in filter(is_model, self.names):
+            need_model(name)
         if is_own(self.main):
             need_class(self.main)
-        elif self.main not in MAIN and not is_command(self.main):
-            raise _unknown("main agent", self.main, (*MAIN, "FILE.py:CLASS", "a command"))
+        elif not is_model(self.main) and self.main not in MAIN and not is_command(self.main):
+            raise _unknown("main agent", self.main, (*MAIN, "FILE.py:CLASS", "llm:MODEL@URL", "a command"))
         if self.goal and self.goal not in GOALS:
             raise _unknown("goal", self.goal, GOALS)
         if self._helper not in (NOBODY, *HELPERS, *ONLINE) and ":" not in self.helper:
             raise _unknown("helper", self.helper, (NOBODY, *HELPERS, *ONLINE))
-        if ":" in self.helper:
+        if ":" in self.helper and not is_model(self.helper):
             need_class(self.helper)
         untold = self.helper in (NOBODY, *ONLINE)
         goal = self.goal or (known.goal if known else "none" if untold else "true")
-        return Lineup(self.main, self._helper, goal, self.seconds)
+        return replace(self, helper=self._helper, goal=goal)
 
     def installed(self) -> Lineup:
         """Return the same lineup, if the networks that its helper needs are installed.
@@ -131,25 +152,32 @@ class Lineup:
         knowledge: Knowledge,
         helped: bool,
         make: Callable[[], MainAgent] | None = None,
+        instruction: Callable[[], str] = str,
     ) -> list[Player]:
         """Return new agents for one episode.
 
-        Without a helper where `helped` is False. `make` makes another main agent.
+        Without a helper where `helped` is False. `make` makes another main agent. `instruction` gives the task as
+        somebody says it, to a language model that does it.
         """
         allowed = which.allowed(knowledge)
         known = HELPERS.get(self.helper)
         name = known.main if helped and known and known.main else self.main
-        main: Any = make() if make else self._main(name, which)
-        found = [Player(Guarded(main, 0, allowed, self.seconds, which.messages), goal, partial_of(main))]
+        main: Any = make() if make else self._main(name, which, instruction)
+        found = [Player(Guarded(main, 0, allowed, self._time(name), which.messages), goal, partial_of(main))]
         if helped and self.helper != NOBODY:
             agent: Agent = known.make(main) if known else self._own(self.helper, which)
-            found.append(
-                Player(Guarded(agent, 1, allowed, self.seconds, which.messages), helper_goal, partial_of(agent))
-            )
+            guarded = Guarded(agent, 1, allowed, self._time(self.helper), which.messages)
+            found.append(Player(guarded, helper_goal, partial_of(agent)))
         return found
 
-    def _main(self, name: str, which: Challenge) -> Agent:
-        """Return the agent that acts: one of ours, the user's own, or a program."""
+    def _time(self, name: str) -> float:
+        """Return the seconds that an agent may think about a tick."""
+        return WAITING if is_model(name) else self.seconds
+
+    def _main(self, name: str, which: Challenge, instruction: Callable[[], str]) -> Agent:
+        """Return the agent that acts: one of ours, a language model, the user's own, or a program."""
+        if is_model(name):
+            return player_of(name, self.asking, self.means, instruction(), which.messages, 0)
         if name in MAIN:
             return MAIN[name](which.goals_in)
         if not is_own(name):
@@ -165,6 +193,8 @@ class Lineup:
         """Return an agent that is made without its partner: one that does not know the goal, or the user's own."""
         if place in ONLINE:
             return ONLINE[place].make(which.goals_in)
+        if is_model(place):
+            return player_of(place, self.asking, self.means, "", which.messages, 1)
         made = load(place)
         with refusing(place):
             own: Agent = made()

@@ -16,6 +16,7 @@ from hearth.challenges.behavior_counts import analysed
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import play
+from hearth.challenges.language_agents import transcripts
 from hearth.challenges.metrics import Outcome, outcome
 from hearth.challenges.tasks import Task
 from hearth.kb.knowledge import Knowledge
@@ -72,6 +73,7 @@ class Record:
         final: digest of the world at the end.
         metrics: the outcome.
         end: why an agent could not go on: its number, a code, a message; None where all could.
+        language: the answers of language models, by the agent's number (see `llm.turns`); None where none took part.
     """
 
     task: str
@@ -82,6 +84,7 @@ class Record:
     final: str
     metrics: Mapping[str, Any]
     end: Mapping[str, Any] | None = None
+    language: Mapping[str, Any] | None = None
 
 
 TRIES = 2
@@ -106,7 +109,9 @@ def _played(job: Job) -> Record:
     which, knowledge = challenge(job.task.challenge), job.known()
     start = start_of(job.task, knowledge, None if job.helped else 1)
     goals = _goals(which, job.task, job.helper_goal, start.home, job.helped)
-    players: Sequence[Any] = job.lineup.players(which, goals[0], goals[-1], knowledge, job.helped, job.make)
+    players: Sequence[Any] = job.lineup.players(
+        which, goals[0], goals[-1], knowledge, job.helped, job.make, lambda: job.task.instruction
+    )
     seed = derive(job.task.seed, "episode", job.seed)
     allowed = which.allowed(knowledge)
     done = play(
@@ -131,7 +136,8 @@ def _played(job: Job) -> Record:
     fault = done.fault
     end = {"agent": fault.agent, "code": str(fault.fault.code), "message": fault.fault.message} if fault else None
     final = digest(done.env.world)
-    return Record(job.task.id, job.seed, job.helped, asked, actions, final, found.as_json(), end)
+    said_by_models = transcripts(players)
+    return Record(job.task.id, job.seed, job.helped, asked, actions, final, found.as_json(), end, said_by_models)
 
 
 def again(task: Task, record: Record, knowledge: Knowledge) -> tuple[Outcome, str]:
@@ -152,8 +158,7 @@ def replayed(
 ) -> tuple[list[Tick], list[Goal | None], list[Progress]]:
     """Return the ticks of a record, the agents' goals, and the progress of the first; errors as of `again`."""
     home = start.home
-    helper_goal = None if record.helper_goal is None else which.grammar.read(record.helper_goal)
-    goals = _goals(which, task, helper_goal, home, record.helped)
+    goals = goals_of(which, task, record, home)
     allowed = which.allowed(home.knowledge)
     env = Env(which.rules, which.partial)
     env.restore(start)
@@ -188,6 +193,12 @@ def _goals(which: Challenge, task: Task, helper_goal: Goal | None, home: Home, h
     if helped:
         goals.append(None if helper_goal is None else which.grammar.in_home(helper_goal, home))
     return goals
+
+
+def goals_of(which: Challenge, task: Task, record: Record, home: Home) -> list[Any]:
+    """Return the goals of the agents of a recorded episode; faults of the helper's goal are raised."""
+    helper_goal = None if record.helper_goal is None else which.grammar.read(record.helper_goal)
+    return _goals(which, task, helper_goal, home, record.helped)
 
 
 def read_choices(

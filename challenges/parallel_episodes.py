@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Any
@@ -30,6 +32,9 @@ def here(workers: int) -> Spread:
     """
 
     def results(jobs: Sequence[Job]) -> Iterator[Record]:
+        if jobs and jobs[0].lineup.language and not jobs[0].lineup.own:
+            yield from _in_threads(jobs, workers)
+            return
         done, apart = 0, any(job.lineup.own for job in jobs)
         while done < len(jobs):
             try:
@@ -41,6 +46,21 @@ def here(workers: int) -> Spread:
                 done += 1
 
     return results
+
+
+def _in_threads(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
+    """Play episodes of language models in threads, which mostly wait: they share a cache, a budget and connections."""
+    rest = deque(jobs)
+    with ThreadPoolExecutor(workers) as pool:
+        waiting = deque(pool.submit(played, rest.popleft()) for _ in range(min(2 * workers, len(rest))))
+        try:
+            while waiting:
+                record = waiting.popleft().result()
+                if rest:
+                    waiting.append(pool.submit(played, rest.popleft()))
+                yield record
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 @contextmanager

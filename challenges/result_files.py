@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from itertools import islice
 from pathlib import Path
@@ -11,7 +11,8 @@ from typing import Any
 
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Record
-from hearth.challenges.metrics import METRICS, Outcomes, by_task
+from hearth.challenges.language_agents import are_transcripts, is_described
+from hearth.challenges.metrics import METRICS, Outcomes, by_task, summary
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -37,6 +38,7 @@ class Header:
         version: of Hearth.
         episodes: task, seed and kind of those that there are; None where there are all. People do not do all.
         code: digest of the file of a user's own helper; "" for ours.
+        language: the language models that took part, by the agent's number: model, prompt, protocol, settings.
     """
 
     suite: Suite
@@ -45,6 +47,7 @@ class Header:
     version: str = VERSION
     episodes: tuple[tuple[str, int, bool], ...] | None = None
     code: str = ""
+    language: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
     @property
     def helped(self) -> tuple[bool, ...]:
@@ -72,7 +75,8 @@ class Header:
 
     def as_json(self) -> dict[str, Any]:
         """Return the header as the first line has it."""
-        agents = {name: value for name, value in asdict(self.lineup).items() if name != "seconds"}
+        agents: dict[str, Any] = {name: getattr(self.lineup, name) for name in ("main", "helper", "goal")}
+        agents |= {"language": self.language} if self.language else {}
         return {
             "format": FORMAT,
             "hearth": self.version,
@@ -123,6 +127,10 @@ class Results:
         """Return the same, without the episodes in which an agent could not go on: these are no scores."""
         return by_task((each.task, each.metrics) for each in self.records if each.helped == helped and each.end is None)
 
+    def summary(self) -> dict[str, Any]:
+        """Return all metrics as means over tasks, of the episodes in which every agent could go on."""
+        return summary(self.finished(False), self.finished(True) if self.header.helped[-1] else {})
+
     @property
     def unfinished(self) -> list[Record]:
         """Return the episodes in which an agent could not go on."""
@@ -155,13 +163,15 @@ def episode_data(record: Record) -> dict[str, Any]:
         "final": record.final,
         "metrics": record.metrics,
         "end": record.end,
+        **({} if record.language is None else {"language": record.language}),
     }
 
 
 def _digest(header: Header, episode: Mapping[str, Any]) -> str:
     import orjson
 
-    parts = [header.suite.digest, header.lineup.main, header.lineup.helper, header.lineup.goal, episode]
+    parts: list[Any] = [header.suite.digest, header.lineup.main, header.lineup.helper, header.lineup.goal, episode]
+    parts += [header.language] if header.language else []
     return blake2b(orjson.dumps(parts, option=orjson.OPT_SORT_KEYS), digest_size=16).hexdigest()
 
 
@@ -204,8 +214,11 @@ def read_header(data: bytes, file: str) -> Header:
         raise HearthError.of(Code.BAD_JSON, f"`seeds` is not a number from 1 to {MOST_SEEDS:,}", file=file)
     suite = read_suite(given.get("suite"), file)
     lineup, version = Lineup(str(names[0]), str(names[1]), str(names[2])), str(given.get("hearth"))[:40]
-    code = str(agents.get("code", ""))[:64]
-    return Header(suite, lineup, seeds, version, _some_episodes(given.get("episodes"), suite, seeds, file), code)
+    code, language = str(agents.get("code", ""))[:64], agents.get("language", {})
+    if not is_described(language):
+        raise HearthError.of(Code.BAD_JSON, "`language` does not describe language models", file=file)
+    episodes = _some_episodes(given.get("episodes"), suite, seeds, file)
+    return Header(suite, lineup, seeds, version, episodes, code, language)
 
 
 def _some_episodes(given: Any, suite: Suite, seeds: int, file: str) -> tuple[tuple[str, int, bool], ...] | None:
@@ -261,11 +274,17 @@ _FIELDS: dict[str, tuple[type, ...]] = {
     "metrics": (dict,),
     "end": (dict, type(None)),
 }
+_LANGUAGE = "language"
+"""The field that episodes of language models have besides."""
 
 
 def episode_of(given: Mapping[str, Any]) -> Record | None:
     """Return an episode of JSON; None where it is not one."""
-    if given.keys() != _FIELDS.keys() or not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
+    if given.keys() - {_LANGUAGE} != _FIELDS.keys():
+        return None
+    if not all(isinstance(given[name], kinds) for name, kinds in _FIELDS.items()):
+        return None
+    if _LANGUAGE in given and not are_transcripts(given[_LANGUAGE]):
         return None
     actions = given["actions"]
     if not all(

@@ -55,7 +55,7 @@ def run(
     Raises:
         HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
     """
-    header = Header(suite, _with_room(suite, lineup.checked()), seeds, code=lineup.code)
+    header = Header(suite, _with_room(suite, lineup.checked()), seeds, code=lineup.code, language=lineup.language)
     before: dict[tuple[str, int, bool], Record] = {}
     if out.exists() and next(read_lines(out), b"") == first_line(header):
         found = read(out)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import groupby, islice, zip_longest
 from pathlib import Path
+from typing import Any
 
 from hearth.agents.agent_registry import MAIN
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Job, Known, Record, again, played
+from hearth.challenges.language_replay import answers_differ
 from hearth.challenges.result_files import Results, read
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -30,12 +32,14 @@ class Check:
         records: the episodes.
         known: gives the knowledge.
         jobs: to be played anew, so that the agents' choices are compared, too; empty otherwise.
+        language: the language models that took part, as the results describe them.
     """
 
     task: Task
     records: tuple[Record, ...]
     known: Known
     jobs: tuple[Job, ...] = ()
+    language: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
 
 
 def read_whole(path: Path) -> Results:
@@ -95,7 +99,7 @@ def _checks(results: Results, known: Known, agents: bool) -> Iterator[Check]:
             for each in records if agents else ():
                 goal = None if each.helper_goal is None else grammar.read(each.helper_goal)
                 jobs.append(Job(tasks[name], each.seed, lineup, each.helped, goal, known))
-            yield Check(tasks[name], records, known, tuple(jobs))
+            yield Check(tasks[name], records, known, tuple(jobs), header.language)
 
 
 def _need_ours(lineup: Lineup) -> None:
@@ -131,6 +135,8 @@ def differences(check: Check) -> tuple[int, list[str]]:
             found.append(f"{where}: {name} is {metrics.get(name)}, and {record.metrics.get(name)} was recorded")
         elif final != record.final:
             found.append(f"{where}: the last world is another than was recorded")
+        elif fault := answers_differ(check.task, record, check.language, check.known()):
+            found.append(f"{where}: {fault}")
         elif check.jobs and played(check.jobs[number]) != record:
             found.append(f"{where}: the agents do something else")
     return len(check.records), found

@@ -93,6 +93,10 @@ def run_tasks(
     workers: int = 0,
     engine: str = "local",
     scheduler: str = "",
+    llm: list[str] | None = None,
+    cache: Path | None = None,
+    prices: str = "",
+    budget: float | None = None,
     as_json: bool = False,
 ) -> None:
     """Let an agent do tasks alone and with a helper, and write all that they did.
@@ -100,7 +104,8 @@ def run_tasks(
     The agent that acts (--main) is one of ours, your own as FILE.py:CLASS, or the command of a program that reads and
     writes lines (docs/examples/agents.md). A run that was stopped goes on where it was; episodes in which an agent
     could not go on are no scores: they are played once more, counted apart, and the status is 1. Helpers: none, random,
-    hp, hp_true, hp_timed, hp_random, oracle_b, oracle_ab, ..., or an agent of your own, as FILE.py:CLASS.
+    hp, hp_true, hp_timed, hp_random, oracle_b, oracle_ab, ..., or an agent of your own, as FILE.py:CLASS. Either may be
+    a language model, llm:MODEL@URL (docs/language-models.md); its replies are kept in --cache.
 
     \b
     Examples:
@@ -108,21 +113,30 @@ def run_tasks(
       hearth challenge run test-1.json --main "node agent.js" --out node.jsonl
       hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
       hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+      hearth challenge run tasks.json --main llm:MODEL@URL --prices 0.15,0.60 --budget 2 --out model.jsonl -j 16
+      hearth challenge run owah.json --helper llm:smollm2 --llm memory=4 --out helped.jsonl
       hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
       hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
     from hearth.challenges.episode_agents import Lineup
+    from hearth.challenges.language_agents import need_models, spending
     from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
+    from hearth.llm.language_settings import kept_next_to, read_settings
 
     suite = read(file)
     if proposals not in ("", "exact"):
         helper = f"{helper}_{proposals}"
-    lineup = Lineup(main, helper, goal, seconds)
-    with bar("episodes") as seen, spread_over(engine, workers, scheduler) as over:
+    asking, means = read_settings(llm or (), cache or kept_next_to(out, (main, helper)), prices, budget)
+    lineup = Lineup(main, helper, goal, seconds, asking, means)
+    need_models(lineup.names, engine, given=bool(llm or cache or prices or budget is not None))
+    with (
+        bar("episodes", lambda: spending(lineup.names, asking, means)) as seen,
+        spread_over(engine, workers, scheduler) as over,
+    ):
         found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
     challenge_output.print_results(found, as_json)
     output.status(len(found.unfinished), strict=True)

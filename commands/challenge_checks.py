@@ -1,7 +1,6 @@
 """`challenge verify | solvable | board`: whether results are true, whether tasks can be done, which runs are best."""
 
 from pathlib import Path
-from typing import Any
 
 from hearth.commands import challenge_household, output
 
@@ -77,43 +76,41 @@ def solvable(
     output.status(len(faults), strict=True)
 
 
-def board(results: list[Path], *, workers: int = 0, as_json: bool = False) -> None:
-    """Rank runs by speedup, each replayed and its metrics computed again; the status is 1 if one is false.
+def board(results: list[Path], *, out: Path | None = None, workers: int = 0, as_json: bool = False) -> None:
+    """Rank runs, each replayed and its metrics computed again, and compare each two on the tasks that both did.
+
+    With --out the board is a page: success, ticks, tokens, cost, faults of answers by code, hazards, and fingerprints
+    of the text protocol and the prompt. The status is 1 if a run is false.
 
     \b
-    Example:
+    Examples:
       hearth challenge board hp.jsonl mine.jsonl
+      hearth challenge board smollm2.jsonl constrained.jsonl --out board.html
     """
-    from hearth.challenges.metrics import summary
-    from hearth.challenges.verification import read_whole
-    from hearth.challenges.verification import verify as differences
+    from hearth.analysis.challenge_board import comparisons, submissions
+    from hearth.analysis.challenge_board_page import board_page
+    from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
+    from hearth.storage.files import write_bytes
 
-    rows: list[dict[str, Any]] = []
-    for path in results:
-        found = read_whole(path)
-        header = found.header
-        figures = summary(found.finished(False), found.finished(True))
-        rows.append(
-            {
-                "file": path.name,
-                "suite": f"{header.suite.challenge} {header.suite.split}",
-                "published": header.suite.published,
-                "main": header.lineup.main,
-                "helper": header.lineup.helper,
-                "goal": header.lineup.goal,
-                "episodes": figures["episodes"],
-                "unfinished": len(found.unfinished),
-                "success": figures["success"],
-                "speedup": figures["speedup"],
-                "speedup_se": figures["speedup_se"],
-                "reward": figures["reward"],
-                "verified": not differences(found, str(path), default, workers),
-            }
-        )
-    rows.sort(key=lambda row: (not row["verified"], row["speedup"] is None, -(row["speedup"] or 0), row["file"]))
+    with bar("runs") as seen:
+        found = submissions(results, default, workers, seen)
+    rows, compared = [each.row for each in found], list(comparisons(found))
+    if out is not None:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write_bytes(out, board_page(rows, compared).encode())
     if as_json:
-        output.emit(rows)
+        output.emit([{**row, "compared": [each for each in compared if each["one"] == row["file"]]} for row in rows])
     else:
-        output.records(rows)
+        output.records([{name: row[name] for name in SHOWN} for row in rows])
+        if compared:
+            output.line()
+            output.records(compared)
     output.status(sum(not row["verified"] for row in rows), strict=True)
+
+
+SHOWN = (
+    *("file", "suite", "published", "main", "helper", "goal", "episodes", "unfinished", "success", "length"),
+    *("speedup", "speedup_se", "reward", "tokens_in", "tokens_out", "cost", "verified"),
+)
+"""The columns of the board that are printed; --json and the page have all."""

@@ -34,10 +34,21 @@ def print_results(results: Results, as_json: bool) -> None:
     if alone:
         output.line()
         output.records(figures["by_set"])
+    _print_language(figures.get("language"))
     _print_unfinished(figures["unfinished"])
 
 
+def _print_language(figures: dict[str, Any] | None) -> None:
+    """Print what language models were asked and answered; nothing where there were none."""
+    if figures and figures["turns"] is not None:
+        output.line()
+        shown = {name: value for name, value in figures.items() if value is not None and name != "faults"}
+        faults = {f"fault {code}": number for code, number in figures["faults"].items()}
+        output.figures({**shown, **faults})
+
+
 def _figures(results: Results) -> dict[str, Any]:
+    from hearth.analysis.challenge_board import language_figures
     from hearth.challenges.metrics import summary
 
     header, unfinished = results.header, results.unfinished
@@ -59,6 +70,7 @@ def _figures(results: Results) -> dict[str, Any]:
             {"code": code, "message": message, "episodes": n} for (code, message), n in reasons.most_common()
         ],
         **({} if helped else {"by_set": _by_set(results)}),
+        **({"language": language_figures(results)} if header.language else {}),
     }
 
 

@@ -217,11 +217,15 @@ def mine(
 
 @app.command()
 def export(form: str, to: Path | None = None, kb: Path | None = None) -> None:
-    """Write the knowledge in another form: the table of actions, the PDDL domain, the graph, a database.
+    """Write the knowledge in another form: the table of actions, the PDDL domain, the graph, a database, grammars.
+
+    A grammar lets a language model write steps alone that are of the action grammar: `grammar` in GBNF, as llama.cpp
+    takes it, or `grammar-lark`, `grammar-regex` (of one step), `grammar-schema` (JSON).
 
     \b
-    Example:
+    Examples:
       hearth kb export pddl --to domain.pddl
+      hearth kb export grammar --to steps.gbnf
     """
     from hearth.kb.tools.export import export as write
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import typer
 
-from hearth.commands import model_tables, output
+from hearth.commands import language_predictions, model_tables, output
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -96,14 +96,30 @@ def predict(
     constrained: bool = False,
     originals: bool = False,
     sketches: str = "annotated",
+    limit: int | None = None,
+    shots: int = 0,
+    llm: list[str] | None = None,
+    cache: Path | None = None,
+    prices: str = "",
+    budget: float | None = None,
     as_json: bool = False,
 ) -> None:
     """Predict a program for each execution of a part of a dataset, into a file that `score dataset` reads.
 
+    A language model, llm:MODEL@URL, gets the texts with the most similar training examples (--shots). Its replies are
+    kept in --cache, and nothing is asked twice; the status is 1 if texts have no answer.
+
     \b
-    Example:
+    Examples:
       hearth model predict build/nearest data_out --part test --out predicted.jsonl
+      hearth model predict llm:smollm2 data_out --shots 4 --out predicted.jsonl
+      hearth model predict llm:MODEL@URL data_out --shots 8 --repair --prices 0.15,0.60 --budget 2 --out p.jsonl
     """
+    if model.startswith("llm:"):
+        asked = language_predictions.asked_model(model, out, llm, cache, prices, budget, constrained)
+        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, limit, as_json)
+        return
+    language_predictions.refuse_options(shots, llm, cache, prices, budget)
     from hearth.commands.progress_line import bar
     from hearth.models.prediction_files import predict_part
 
@@ -119,6 +135,7 @@ def predict(
             is_constrained=constrained,
             originals=originals,
             sketches=sketches,
+            limit=limit,
             seen=seen,
         )
     output.say(f"{output.counted(count, 'prediction')} in {out}", {"out": out, "predictions": count}, as_json)

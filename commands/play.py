@@ -51,7 +51,8 @@ def play(
     """Play an episode in a home until a goal is reached, with agents of any kind.
 
     An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal), `listen` or `listen:PORT`
-    (a program that connects to that port of this machine), `stdio` (the program that runs this command), or `wait`.
+    (a program that connects to that port of this machine), `stdio` (the program that runs this command), a language
+    model (llm:MODEL@URL), or `wait`.
     Agents that are not named wait. docs/examples/agents.md describes the messages. The status is 1 if the goal is not
     reached.
 
@@ -59,6 +60,7 @@ def play(
     Examples:
       hearth play maple --goal "HOLDS(agent, milk)" --text
       hearth play maple --goal "HOLDS(agent, milk)" --agent 0="node docs/examples/agent.js" --out episode.jsonl
+      hearth play maple --goal "HOLDS(agent, milk)" --agent 0=llm:smollm2
       hearth play --task household-train-00001 --text
       hearth replay episode.jsonl
     """
@@ -109,6 +111,9 @@ class _How(NamedTuple):
 PLAYED = "played"
 """The group of the actions of challenges."""
 
+MODEL = "llm:"
+"""The beginning of a language model's name."""
+
 MOST_AGENTS = 16
 
 FORMS = {"graph": ("graph",), "text": ("text",), "both": ("graph", "text")}
@@ -139,7 +144,20 @@ def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
         return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)
     if seat.spec == WAIT:
         return Waiting()
+    if seat.spec.startswith(MODEL):
+        return _model(seat, how)
     return WireAgent(_channel(seat, how, stack), how.within, FORMS[how.form], how.ticks, how.keep, how.messages)
+
+
+def _model(seat: _Seat, how: _How) -> Agent:
+    """Return an agent that a language model decides for, with the usual settings: the first acts, the second helps."""
+    from hearth.challenges.language_agents import need_model, player_of
+    from hearth.llm.language_settings import Asking, Means
+
+    if seat.number > 1:
+        raise typer.BadParameter(f"agent {seat.number} is a language model; only agents 0 and 1 can be")
+    need_model(seat.spec)
+    return player_of(seat.spec, Asking(), Means(seconds=how.within), "", how.messages, seat.number)
 
 
 class Waiting:

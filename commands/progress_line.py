@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
@@ -19,11 +19,12 @@ def watched(items: Iterable[T], seen: Seen, total: int | None = None) -> Iterato
 
 
 @contextmanager
-def bar(what: str) -> Iterator[Seen]:
+def bar(what: str, note: Callable[[], str] = str) -> Iterator[Seen]:
     """Yield a bar on the error stream, removed at the end; nothing if the stream is not a terminal.
 
     Args:
         what: the items, in a word or two.
+        note: gives further words, each time that progress is reported.
 
     Yields:
         A function that reports progress: items done and, if known, the total.
@@ -41,6 +42,7 @@ def bar(what: str) -> Iterator[Seen]:
 
         def seen(done: int, total: int | None) -> None:
             rate = done / max(time.monotonic() - began, 1e-3)
-            shown.update(task, completed=done, total=total, rate=rate)
+            said = f"{what} ({more})" if (more := note()) else what
+            shown.update(task, completed=done, total=total, rate=rate, description=said)
 
         yield seen

@@ -11,7 +11,7 @@ from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import named_nodes, seen_failure, seen_goal
 from hearth.envs.text_agent import plain
-from hearth.envs.text_layout import Layout, Placement, Stated, layout, placement, said_rows, stated
+from hearth.envs.text_layout import Layout, Placement, Stated, layout, placement, printable, said_rows, stated
 from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failure_words import sentence
@@ -85,7 +85,7 @@ def compact(
     writer = _Writer(view, legal, goal, protocol, stopped)
     head = [writer.goal(task), writer.me(), *writer.others()]
     if note := last or writer.last():
-        head.append(f"Last: {_cut(note, protocol.most_last)}")
+        head.append(f"Last: {_cut(printable(note), protocol.most_last)}")
     return _cut(_within(writer, "\n".join(head), protocol.usual), protocol.most)
 
 
@@ -168,7 +168,7 @@ class _Writer:
         yield from map(self._other, self.view.others)
 
     def _other(self, pose: Pose) -> str:
-        last = f", tried {said_step(plain(pose.last.instruction))}" if pose.last is not None else ""
+        last = f", tried {printable(said_step(plain(pose.last.instruction)))}" if pose.last is not None else ""
         return f"Agent {pose.agent}: here, holding {self._names(pose.holding)}{last}."
 
     def here(self, detail: int) -> str:
@@ -340,13 +340,13 @@ def _by_class(home: Home, nodes: int, between: str = " | ") -> str:
     groups: dict[str, list[int]] = {}
     for i in indices(nodes):
         groups.setdefault(home.classes[i], []).append(home.ids[i])
-    return between.join(f"{name} {_runs(ids)}" for name, ids in groups.items())
+    return between.join(f"{printable(name)} {_runs(ids)}" for name, ids in groups.items())
 
 
 @lru_cache(maxsize=65_536)
 def _counted(home: Home, nodes: int) -> str:
     """Return the classes of some nodes, each with how many there are."""
-    counts = Counter(home.classes[i] for i in indices(nodes))
+    counts = Counter(printable(home.classes[i]) for i in indices(nodes))
     return ", ".join(f"{name} x{number}" if number > 1 else name for name, number in counts.items())
 
 
@@ -365,11 +365,6 @@ def _runs(ids: Iterable[int]) -> str:
         else:
             runs.append([number])
     return " ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else " ".join(map(str, run)) for run in runs)
-
-
-def printable(text: str) -> str:
-    """Return a text on one line, with `?` for characters that a terminal would obey."""
-    return "".join(each if each.isprintable() else "?" for each in " ".join(text.split()))
 
 
 def said_step(text: str) -> str:

@@ -9,9 +9,10 @@ from functools import lru_cache
 from typing import Any, Protocol
 
 from hearth.envs.answer_forms import WALK, read_answer
-from hearth.envs.compact_text import compact, printable, said_step, wanted_nodes
+from hearth.envs.compact_text import compact, said_step, wanted_nodes
 from hearth.envs.rewards import USUAL_REWARDS, Reward
 from hearth.envs.session import MOST_TICKS
+from hearth.envs.text_layout import printable
 from hearth.envs.text_protocol_settings import Protocol as Words
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code

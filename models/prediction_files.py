@@ -132,6 +132,7 @@ def predict_part(
     is_constrained: bool = False,
     originals: bool = False,
     sketches: str = ANNOTATED,
+    limit: int | None = None,
     seen: Seen = unseen,
 ) -> int:
     """Write the predictions of a trained model for a part of a split; their number.
@@ -146,6 +147,7 @@ def predict_part(
         is_constrained: decode with the engine in the loop; models of sketches always do.
         originals: leave out executions of augmented programs.
         sketches: `annotated` or `inferred`: which go before the others.
+        limit: the first executions only.
         seen: reports progress.
 
     Raises:
@@ -154,7 +156,7 @@ def predict_part(
     """
     dataset = Dataset.open(folder)
     name, trained = restore(model)
-    names = _asked(dataset, split, part, originals)
+    names = names_asked(dataset, split, part, originals)[:limit]
     if split and not part.startswith("train"):
         refuse_seen(model, dataset, split, names)
     text = MODELS[name].input == "text"
@@ -165,7 +167,8 @@ def predict_part(
     return write(completed(dataset, found) if repaired else found, out)
 
 
-def _asked(dataset: Dataset, split: str, part: str, originals: bool) -> list[str]:
+def names_asked(dataset: Dataset, split: str, part: str, originals: bool) -> list[str]:
+    """Return the ids of the executions of a part; without those of augmented programs if `originals`."""
     names = chosen(dataset, split, part)
     if originals:
         query = "SELECT execution_id FROM executions JOIN programs USING (program_id) WHERE parent_id IS NULL"

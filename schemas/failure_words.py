@@ -299,6 +299,8 @@ WHY: Mapping[Code, Words] = {
     Code.NOT_ALLOWED: "[{action}] is not allowed here",
     Code.DISCONNECTED: "the agent is gone",
     Code.AGENT_FAILED: _facts("the agent failed"),
+    Code.NO_ANSWER: _facts("the language model gave no answer that can be used"),
+    Code.OVER_BUDGET: _facts("the budget for the language model is spent"),
     # People and their browsers
     Code.NO_SESSION: "there is no session",
     Code.TOO_FAST: "this came too soon after the last",

@@ -117,6 +117,8 @@ class Code(StrEnum):
     DISCONNECTED = "DISCONNECTED", 77
     AGENT_FAILED = "AGENT_FAILED", 78
     FINISHED = "FINISHED", 83
+    NO_ANSWER = "NO_ANSWER", 86
+    OVER_BUDGET = "OVER_BUDGET", 87
     # People and their browsers
     NO_SESSION = "NO_SESSION", 79
     TOO_FAST = "TOO_FAST", 80

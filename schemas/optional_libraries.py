@@ -16,6 +16,7 @@ EXTRAS = {
     "agents": ("gymnasium", "pettingzoo"),
     "dask": ("dask", "distributed"),
     "episodes": ("minari", "h5py"),
+    "llm": ("httpx2",),
     "models": ("torch", "safetensors"),
     "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
     "plan": ("unified_planning",),

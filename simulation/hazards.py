@@ -6,7 +6,7 @@ asks for a number of ticks, once it has lasted so long or the program ends in it
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -58,7 +58,12 @@ def hazards(execution: Execution) -> tuple[Found, ...]:
         >>> [found.sentence() for found in hearth.hazards(execution)]
         ['the fridge stands open']
     """
-    first, *later = execution.worlds
+    return hazards_among(execution.worlds)
+
+
+def hazards_among(worlds: Sequence[World]) -> tuple[Found, ...]:
+    """Return the hazards that came while some worlds followed each other; the first is the start."""
+    first, *later = worlds
     known = first.home.knowledge
     given, since, over = set(dict(present(first))), dict[Place, int](), list[Found]()
     for number, world in enumerate(later, 1):
@@ -69,9 +74,9 @@ def hazards(execution: Execution) -> tuple[Found, ...]:
         for place, is_one in now.items():
             if is_one and place not in given:
                 since.setdefault(place, number)
-    last = execution.final
+    last = worlds[-1]
     for place, step in since.items():
-        over += _over(known, last, place, step, len(execution.worlds), at_end=True)
+        over += _over(known, last, place, step, len(worlds), at_end=True)
     return tuple(sorted(over, key=lambda found: (found.step, found.hazard.name, found.things)))
 
 

@@ -16,7 +16,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = (
     "schemas", "storage", "kb", "homes", "simulation", "grounding", "repair", "rendering", "datasets", "scoring",
-    "pipelines", "models", "agents", "envs", "challenges", "interop", "analysis", "studies", "web",
+    "pipelines", "models", "agents", "envs", "llm", "challenges", "interop", "analysis", "studies", "web",
 )  # fmt: skip
 
 ENTRY_POINTS = {
@@ -36,6 +36,7 @@ ENTRY_POINTS = {
         "hearth:TextHome", "hearth:TextHomes",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
+    "Language models": ("hearth:Endpoint", "hearth:run_tasks", "hearth.simulation.actions.legal:Legal.grammar"),
     "Goals and checks": (
         "hearth.challenges.instruction_writer:instruction",
         "hearth.challenges.instruction_reader:read_instruction",

@@ -1,4 +1,4 @@
-"""The knowledge in other forms: Markdown, PDDL, GraphML, a DuckDB file."""
+"""The knowledge in other forms: Markdown, PDDL, GraphML, grammars of steps, a DuckDB file."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -7,6 +7,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.action_table import action_table
 from hearth.kb.tools.graph_and_tables import fill, graph
 from hearth.kb.tools.pddl import domain
+from hearth.kb.tools.step_grammar import as_gbnf, as_lark, as_regex, as_schema
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.duckdb_connections import open_database
@@ -44,5 +45,13 @@ def _database(knowledge: Knowledge, to: Path | None) -> str:
     return ""
 
 
-FORMS: dict[str, Callable[[Knowledge], str]] = {"table": action_table, "pddl": domain, "graphml": _graphml}
+FORMS: dict[str, Callable[[Knowledge], str]] = {
+    "table": action_table,
+    "pddl": domain,
+    "graphml": _graphml,
+    "grammar": as_gbnf,
+    "grammar-lark": as_lark,
+    "grammar-regex": as_regex,
+    "grammar-schema": as_schema,
+}
 """Forms that are text."""

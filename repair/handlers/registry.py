@@ -56,7 +56,8 @@ BEFORE_REPAIR: frozenset[Code] = frozenset(
         Code.NOT_UNDERSTOOD, Code.AMBIGUOUS, Code.FUZZY_MATCH, Code.NO_STEP, Code.DAMAGED_FILE,
         Code.FILE_TOO_LARGE, Code.UNWRITABLE, Code.LOCKED, Code.INTERNAL_ERROR, Code.TIMED_OUT,
         Code.BAD_ARGUMENT, Code.HELD_ALREADY, Code.NOT_SEEN, Code.NOT_ALLOWED, Code.DISCONNECTED, Code.AGENT_FAILED,
-        Code.NO_SESSION, Code.TOO_FAST, Code.OUT_OF_ORDER, Code.FINISHED,
+        Code.NO_SESSION, Code.TOO_FAST, Code.OUT_OF_ORDER, Code.FINISHED, Code.NO_ANSWER,
+        Code.OVER_BUDGET,
     }
 )  # fmt: skip
 """Codes of reading, checking, grounding, repairing itself, scoring, publishing and agents: no run ends in them, but for

@@ -8,10 +8,12 @@ from functools import lru_cache
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from hearth.kb.tools.line_grammars import written
 from hearth.schemas.program import ObjectRef, Step
 from hearth.schemas.short_repr import brief
 from hearth.simulation.actions.common import Action
 from hearth.simulation.actions.consequences import actions as consequent
+from hearth.simulation.actions.legal_grammar import legal_grammar
 from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.observation import reach, visible_nodes
@@ -73,6 +75,24 @@ class Legal:
         if len(masks) > 1:
             count = count * masks[1].bit_count() - (masks[0] & masks[1]).bit_count()
         return count
+
+    def grammar(self, form: str = "gbnf", names: Mapping[str, str] | None = None, *, wait: bool = False) -> str:
+        """Return the grammar of these instructions, written as `Grab milk 142`, for constrained decoding.
+
+        Args:
+            form: `gbnf`, `lark`, `regex` or `schema` (of JSON, with the field `command`).
+            names: the actions that may be written, and the word for each; all, by their own names, where None.
+            wait: whether `wait` may be written, too.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: there is no such form; EMPTY: nothing can be done.
+
+        Examples:
+            >>> legal = env.legal(0)
+            >>> legal.grammar("gbnf").splitlines()[0], "Walk" in legal.grammar("regex")
+            ('root ::= line', True)
+        """
+        return written(legal_grammar(self.home, self.masks, names, wait=wait), form)
 
     def objects(self, action: str, position: int = 0) -> tuple[int, ...]:
         """Ids of the nodes that an argument of an action may be, ascending; none when it can't be done."""

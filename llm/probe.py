@@ -1,0 +1,155 @@
+"""A probe of a chat server: which parts of a request it obeys. Servers take fields that they ignore."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from hearth.kb.tools.line_grammars import line_grammar
+from hearth.llm.constraints import FORMS, keeps
+from hearth.llm.endpoint import Endpoint
+from hearth.llm.replies import Reply, read_reply
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+
+OBEYED, IGNORED, REFUSED = "obeyed", "ignored", "refused"
+"""The findings about a part of a request; `refused` is an error of the server."""
+
+ODD = line_grammar([["zebra ", ("1741", "2853")], ["quartz ", ("39", "58")]])
+"""A grammar of answers that no model gives by itself."""
+
+GREETING = "Say hello in one short sentence."
+COUNT = "Count from 1 to 200, separated by spaces: 1 2 3 4"
+
+DOT = (
+    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJ"
+    "AAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+)
+"""A picture of one red dot."""
+
+TOOL = {
+    "type": "function",
+    "function": {
+        "name": "act",
+        "description": "Do a command in the home.",
+        "parameters": {"type": "object", "properties": {"command": {"type": "string"}}, "required": ["command"]},
+    },
+}
+
+
+def probe(endpoint: Endpoint) -> dict[str, Any]:
+    """Ask a server about twenty short questions, and return which parts of a request it obeys.
+
+    The findings about grammars are kept in the endpoint's cache, for runs.
+
+    Raises:
+        HearthError: NO_ANSWER: it does not answer even a plain question.
+    """
+    few = _impatient(endpoint)
+    plain = _reply(few, GREETING)
+    facts: dict[str, Any] = {
+        "model": endpoint.model,
+        "url": endpoint.url,
+        "says": plain.text.strip()[:80],
+        "counts_tokens": plain.counted,
+        "seconds": plain.seconds,
+        "max_tokens": _finding(lambda: _reply(few, COUNT, max_tokens=5), lambda reply: len(reply.text) < 60),
+        "stop": _finding(lambda: _reply(few, COUNT, stop=["7"], max_tokens=60), lambda reply: "7" not in reply.text),
+        "repeats_itself": _finding(lambda: _reply(few, GREETING), lambda reply: reply.text == plain.text),
+        "n": _finding(lambda: _json(few, GREETING, n=2), lambda given: len(given.get("choices", [])) == 2),
+        "logprobs": _finding(lambda: _json(few, GREETING, logprobs=True), _has_logprobs),
+        "tools": _finding(
+            lambda: _json(few, "Open the fridge with number 7.", tools=[TOOL], tool_choice="required"), _calls
+        ),
+        "images": _finding(lambda: _json(few, [{"type": "text", "text": "What colour?"}, _picture()]), _answers),
+    }
+    found = {**facts, **_grammars(few)}
+    _keep(endpoint, found)
+    return found
+
+
+def grammar_facts(endpoint: Endpoint) -> Mapping[str, Any]:
+    """Return which grammars a server obeys, of an earlier probe or of one made now."""
+    import orjson
+
+    known = endpoint.cache.facts(endpoint.model, endpoint.url)
+    if known is not None:
+        return dict(orjson.loads(known))
+    found = _grammars(_impatient(endpoint))
+    _keep(endpoint, found)
+    return found
+
+
+def _keep(endpoint: Endpoint, found: Mapping[str, Any]) -> None:
+    import orjson
+
+    endpoint.cache.put_facts(endpoint.model, endpoint.url, orjson.dumps({form: found[form] for form in FORMS}).decode())
+
+
+def _impatient(endpoint: Endpoint) -> Endpoint:
+    """Return an endpoint of the same server that keeps nothing, and tries twice; a server may fail at a field."""
+    means = replace(endpoint.means, tries=2, cache=None, budget=None, offline=False)
+    return endpoint.like(
+        means, replace(endpoint.asking, temperature=min(endpoint.asking.temperature, 0.0), most_tokens=48)
+    )
+
+
+def _grammars(endpoint: Endpoint) -> dict[str, str]:
+    return {
+        form: _finding(
+            lambda fields=fields: _reply(endpoint, GREETING, **fields(ODD)),  # type: ignore[misc]
+            lambda reply, form=form: keeps(reply.text, ODD, form),  # type: ignore[misc]
+        )
+        for form, fields in FORMS.items()
+    }
+
+
+def _finding(ask: Callable[[], Any], obeys: Callable[[Any], bool]) -> str:
+    try:
+        return OBEYED if obeys(ask()) else IGNORED
+    except HearthError as error:
+        if error.diagnostics[0].code is not Code.NO_ANSWER:
+            raise
+        return REFUSED
+
+
+def _json(endpoint: Endpoint, question: Any, **more: Any) -> Mapping[str, Any]:
+    given = endpoint.exchange([{"role": "user", "content": question}], **more)
+    return given if isinstance(given, Mapping) else {}
+
+
+def _reply(endpoint: Endpoint, question: Any, **more: Any) -> Reply:
+    """Return the reply to a question; none of the cache, because a server may answer otherwise the second time."""
+    import time
+
+    began = time.monotonic()
+    reply = read_reply(_json(endpoint, question, **more), len(str(question)))
+    if reply is None:
+        raise HearthError.of(Code.NO_ANSWER, f"{endpoint.where} gave JSON without a message")
+    return replace(reply, seconds=round(time.monotonic() - began, 3))
+
+
+def _picture() -> Mapping[str, Any]:
+    return {"type": "image_url", "image_url": {"url": DOT}}
+
+
+def _answers(given: Mapping[str, Any]) -> bool:
+    return read_reply(given, 0) is not None
+
+
+def _has_logprobs(given: Mapping[str, Any]) -> bool:
+    choices = given.get("choices")
+    return (
+        isinstance(choices, list)
+        and bool(choices)
+        and isinstance(choices[0], dict)
+        and bool(choices[0].get("logprobs"))
+    )
+
+
+def _calls(given: Mapping[str, Any]) -> bool:
+    try:
+        return bool(given["choices"][0]["message"]["tool_calls"][0]["function"]["name"] == "act")
+    except (KeyError, IndexError, TypeError):
+        return False

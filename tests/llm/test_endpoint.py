@@ -1,0 +1,404 @@
+"""Endpoints against a server that lies: retries, limits, cache, ledger, budget, and keys that stay secret."""
+
+from __future__ import annotations
+
+import sqlite3
+import subprocess
+import sys
+import threading
+import time
+from email.utils import formatdate
+
+import pytest
+from lying_server import dripping, endless, gone, half, raw, reply, serving, silent
+
+from hearth import Endpoint
+from hearth.llm.addresses import LOCAL, checked_url, key_for, read_name
+from hearth.llm.answer_cache import AnswerCache
+from hearth.llm.language_settings import Asking, Means, read_settings
+from hearth.schemas.diagnostics import HearthError
+
+HELLO = [{"role": "user", "content": "hello"}]
+
+
+@pytest.fixture
+def waits():
+    return []
+
+
+@pytest.fixture
+def asked(waits):
+    """Returns an endpoint of a server's address; its waits are recorded and take no time."""
+
+    def make(url, *, asking=None, **means):
+        return Endpoint(
+            url, "mini", asking or Asking(), Means(**{"tries": 4, "seconds": 5.0, **means}), sleep=waits.append
+        )
+
+    return make
+
+
+def test_an_honest_reply(asked):
+    with serving("Walk fridge 1") as (url, server):
+        found = asked(url).ask(HELLO)
+    assert (found.text, found.tokens_in, found.tokens_out, found.counted, found.tries) == (
+        "Walk fridge 1",
+        10,
+        2,
+        True,
+        1,
+    )
+    assert server.asked == [{"model": "mini", "messages": HELLO, "max_tokens": 256, "temperature": 0.0}]
+
+
+@pytest.mark.parametrize("status", [408, 409, 425, 429, 500, 502, 503, 529])
+def test_what_passes_is_asked_again_with_longer_waits(asked, waits, status):
+    with serving(status, status, "wait") as (url, server):
+        model = asked(url)
+        assert model.ask(HELLO).tries == 3
+    assert len(server.asked) == 3 and waits == [0.5, 1.0]
+    assert model.spent.failed == ((str(status), 2),) and model.spent.tries == 3
+
+
+@pytest.mark.parametrize(("header", "least", "most"), [("7", 7, 7), ("0", 0, 0), (None, 0.5, 0.5), ("soon", 0.5, 0.5)])
+def test_a_server_says_how_long_to_wait(asked, waits, header, least, most):
+    heads = {} if header is None else {"retry-after": header}
+    with serving((429, heads), "wait") as (url, _):
+        asked(url).ask(HELLO)
+    assert len(waits) == 1 and least <= waits[0] <= most
+
+
+def test_a_time_to_wait_may_be_a_date(asked, waits):
+    with serving((503, {"retry-after": formatdate(time.time() + 20, usegmt=True)}), "wait") as (url, _):
+        asked(url).ask(HELLO)
+    assert 15 < waits[0] < 21
+
+
+def test_a_server_that_asks_to_wait_for_an_hour_is_left(asked, waits):
+    with serving((429, {"retry-after": "3600"})) as (url, server), pytest.raises(HearthError, match="wait 3600 s"):
+        asked(url).ask(HELLO)
+    assert len(server.asked) == 1 and waits == []
+
+
+@pytest.mark.parametrize("status", [400, 401, 403, 404, 422])
+def test_what_does_not_pass_is_not_asked_again(asked, status):
+    with serving(status, "wait") as (url, server), pytest.raises(HearthError, match=f"NO_ANSWER.*{status}"):
+        asked(url).ask(HELLO)
+    assert len(server.asked) == 1
+
+
+BROKEN = {
+    "half": raw(half),
+    "gone": raw(gone),
+    "endless": raw(endless),
+    "not JSON": b"<html>busy</html>",
+    "empty": b"",
+    "no choices": {"choices": []},
+    "no message": {"choices": [{"text": "hello"}]},
+    "no content": {"choices": [{"message": {"role": "assistant", "content": None}}]},
+    "numbers": {"choices": [{"message": {"content": 7}}]},
+    "a list": [1, 2],
+    "not UTF-8": b'{"choices": [{"message": {"content": "\xff\xfe"}}]}',
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_reply_is_a_try_that_failed(asked, name):
+    with serving(BROKEN[name], "wait") as (url, server):
+        model = asked(url)
+        assert model.ask(HELLO).text == "wait"
+    assert len(server.asked) == 2 and len(model.spent.failed) == 1
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_server_that_never_answers_right_is_typed(asked, name):
+    with serving(BROKEN[name]) as (url, server), pytest.raises(HearthError, match=r"NO_ANSWER.*after 2 tries"):
+        asked(url, tries=2).ask(HELLO)
+    assert len(server.asked) == 2
+
+
+@pytest.mark.parametrize("deed", [silent, dripping])
+def test_no_reply_takes_longer_than_it_may(asked, deed):
+    began = time.monotonic()
+    with serving(raw(deed)) as (url, _), pytest.raises(HearthError, match="NO_ANSWER"):
+        asked(url, tries=1, seconds=0.3).ask(HELLO)
+    assert time.monotonic() - began < 3
+
+
+def test_nobody_listens(asked):
+    with serving("wait") as (url, _):
+        pass
+    with pytest.raises(HearthError, match=r"NO_ANSWER.*ConnectError"):
+        asked(url, tries=2).ask(HELLO)
+
+
+def test_redirections_are_not_followed(asked):
+    with serving("wait") as (other, reached):
+        with (
+            serving((307, {"location": f"{other}/chat/completions"})) as (url, _),
+            pytest.raises(HearthError, match="307"),
+        ):
+            asked(url).ask(HELLO)
+        assert reached.asked == []
+
+
+def test_a_tool_call_is_a_reply_and_thoughts_in_parts_are_joined(asked):
+    call = {"type": "function", "function": {"name": "act", "arguments": '{"command": "Walk fridge 1"}'}}
+    with serving(
+        {"choices": [{"message": {"content": None, "tool_calls": [call]}}]},
+        {"choices": [{"message": {"content": [{"type": "text", "text": "Walk "}, {"text": "fridge 1"}, {"x": 1}]}}]},
+    ) as (url, _):
+        model = asked(url)
+        one, two = model.ask(HELLO), model.ask([*HELLO, *HELLO])
+    assert '"command' in one.text and two.text == "Walk fridge 1"
+    assert not one.counted and one.tokens_in > 0, "tokens are estimated where a server does not count"
+
+
+@pytest.mark.parametrize("usage", [None, {}, {"prompt_tokens": -5, "completion_tokens": "many"}, 7])
+def test_wrong_counts_are_estimated(asked, usage):
+    with serving({**reply("wait"), "usage": usage}) as (url, _):
+        found = asked(url).ask(HELLO)
+    assert not found.counted and found.tokens_in > 5 and found.tokens_out == 1
+
+
+def test_a_reply_that_was_cut_says_so(asked):
+    with serving(reply("Walk fri", finish_reason="length")) as (url, _):
+        assert asked(url).ask(HELLO).cut
+
+
+def test_servers_that_want_the_other_name_of_the_length_get_it(asked):
+    refused = {"error": {"message": "Use 'max_completion_tokens' instead."}}
+    with serving((400, {}, refused), "wait") as (url, server):
+        assert asked(url).ask(HELLO).text == "wait"
+    assert "max_completion_tokens" in server.asked[1] and "max_tokens" not in server.asked[1]
+
+
+def test_halves_of_characters_do_no_harm(asked, tmp_path):
+    with serving(rb'{"choices": [{"message": {"content": "wait \ud83d"}}]}') as (url, _):
+        try:
+            text = asked(url, tries=1, cache=tmp_path / "c.sqlite").ask(HELLO).text
+        except HearthError as error:  # a reader of JSON that refuses them is as good
+            assert "NO_ANSWER" in str(error)
+        else:
+            text.encode()
+
+
+# The cache, and what is stored
+
+
+def test_nothing_is_asked_twice(asked, tmp_path):
+    file = tmp_path / "kept.sqlite"
+    with serving("one", "two", "three") as (url, server):
+        first = asked(url, cache=file).ask(HELLO)
+        again = asked(url, cache=file)
+        assert again.ask(HELLO).text == "one" and again.sent == 0
+        assert again.ask(HELLO, temperature=1.0).text == "two"
+        assert asked(url, cache=file, asking=Asking(temperature=0.5)).ask(HELLO, seed=1).text == "three"
+    assert len(server.asked) == 3 and not first.kept
+    offline = asked(url, cache=file, offline=True)
+    assert offline.ask(HELLO).kept
+    with pytest.raises(HearthError, match="the cache has no reply"):
+        offline.ask([{"role": "user", "content": "something else"}])
+
+
+def test_a_prompt_asked_at_the_same_time_by_many_threads(asked, tmp_path):
+    lock, now, most = threading.Lock(), [0], [0]
+
+    def busy(body):
+        with lock:
+            now[0] += 1
+            most[0] = max(most[0], now[0])
+        time.sleep(0.02)
+        with lock:
+            now[0] -= 1
+        return body["messages"][0]["content"]
+
+    with serving(busy) as (url, _):
+        model = asked(url, at_once=3, cache=tmp_path / "c.sqlite")
+        said = {}
+        threads = [threading.Thread(target=lambda n=n: said.update({n: model(f"prompt {n}")})) for n in range(20)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    assert said == {n: f"prompt {n}" for n in range(20)} and most[0] <= 3
+    assert model.spent.replies == 20
+
+
+@pytest.mark.parametrize("data", [b"not a database at all", b"SQLite format 3\0" + b"x" * 4096])
+def test_a_cache_that_is_something_else_is_refused(tmp_path, data):
+    file = tmp_path / "other.sqlite"
+    file.write_bytes(data)
+    with pytest.raises(HearthError) as error:
+        Endpoint(LOCAL, "mini", means=Means(cache=file))
+    assert str(error.value.diagnostics[0].code) in ("DAMAGED_FILE", "UNWRITABLE") and file.read_bytes() == data
+
+
+def test_a_database_of_somebody_else_is_left_alone(tmp_path):
+    file = tmp_path / "other.sqlite"
+    with sqlite3.connect(file) as other:
+        other.execute("CREATE TABLE answers (x)")
+    with pytest.raises(HearthError, match="a database of something else"):
+        Endpoint(LOCAL, "mini", means=Means(cache=file))
+
+
+def test_the_budget_is_kept(asked, tmp_path):
+    """Prices are of a million tokens: a reply here costs 10 * 1 + 2 * 5 = 20 millionths."""
+    means = {"prices": (1.0, 5.0), "cache": tmp_path / "c.sqlite"}
+    asking = Asking(most_tokens=2)
+    with serving("wait") as (url, server):
+        model = asked(url, asking=asking, budget=100e-6, **means)
+        with pytest.raises(HearthError, match="OVER_BUDGET"):
+            for number in range(100):
+                model(f"prompt {number}")
+        assert model.purse.spent <= 100e-6 and len(server.asked) == model.spent.replies > 1
+        more = asked(url, asking=asking, budget=200e-6, **means)
+        assert more.purse.spent == pytest.approx(20e-6 * len(server.asked))
+        number = len(server.asked)
+        assert more("prompt 0") == "wait" and len(server.asked) == number, "what is kept costs nothing"
+        more("one more")
+    assert len(server.asked) == number + 1
+
+
+def test_threads_that_begin_together_share_an_endpoint(tmp_path):
+    """Two endpoints would not share a budget, and would lock each other out of the file."""
+    from hearth.llm.endpoint import endpoint_of
+
+    found, start = [], threading.Barrier(8)
+
+    def begin():
+        start.wait()
+        found.append(endpoint_of("llm:mini", Asking(), Means(cache=tmp_path / "shared.sqlite")))
+
+    threads = [threading.Thread(target=begin) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8 and len(set(map(id, found))) == 1
+
+
+def test_processes_that_begin_together_share_a_cache(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from hearth.llm.answer_cache import AnswerCache\n"
+        "from hearth.llm.replies import Reply\n"
+        "cache = AnswerCache(Path(sys.argv[1]))\n"
+        "[cache.put(f'{sys.argv[2]}-{n}', 'mini', Reply('x')) for n in range(20)]"
+    )
+    words = [sys.executable, "-c", code, str(tmp_path / "shared.sqlite")]
+    running = [subprocess.Popen([*words, str(n)]) for n in range(4)]
+    assert [process.wait() for process in running] == [0] * 4
+    assert AnswerCache(tmp_path / "shared.sqlite").spent("mini").replies == 80
+
+
+# Keys
+
+
+SECRET = "sk-very-secret-9876543210"
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        f"http://user:{SECRET}@127.0.0.1/v1", f"http://{SECRET}@127.0.0.1/v1", f"https://x.org/v1?key={SECRET}",
+        f"https://x.org/v1?{SECRET}", f"https://x.org/v1#{SECRET}", f"https://x.org/v1?api-version=1&k={SECRET}",
+        f"ftp://x.org/{SECRET}", f"http://x.org:port/{SECRET}", f"http://[{SECRET}", f"file:///{SECRET}",
+        f"http://x.org/v1\n{SECRET}",
+    ],
+)  # fmt: skip
+def test_an_address_with_a_key_is_refused_and_not_repeated(url):
+    for act in (lambda: checked_url(url), lambda: read_name(f"llm:mini@{url}"), lambda: Endpoint(url, "mini")):
+        with pytest.raises(HearthError) as error:
+            act()
+            raise AssertionError(url)
+        assert SECRET not in str(error.value) and SECRET not in repr(error.value.diagnostics)
+
+
+def test_a_key_goes_to_the_server_and_nowhere_else(asked, tmp_path, monkeypatch, capfd, caplog):
+    """The server repeats the key in a reply and in an error."""
+    monkeypatch.setenv("HEARTH_LLM_KEY", SECRET)
+    file = tmp_path / "c.sqlite"
+    refused = {"error": {"message": f"the key {SECRET} may not"}}
+    with serving(f"your key is {SECRET}", (403, {}, refused)) as (url, server):
+        model = asked(url, cache=file)
+        assert model("hello") == "your key is [key]"
+        with pytest.raises(HearthError) as error:
+            model("again")
+    assert [heads["authorization"] for heads in server.heads] == [f"Bearer {SECRET}"] * 2
+    model.cache.close()
+    seen = [str(error.value), repr(model), *capfd.readouterr(), caplog.text]
+    assert "[key]" in seen[0] and not any(SECRET in each for each in seen)
+    assert all(SECRET.encode() not in path.read_bytes() for path in tmp_path.iterdir())
+
+
+def test_keys_of_a_host_go_to_that_host_alone(monkeypatch):
+    for name in ("HEARTH_LLM_KEY", "OPENAI_API_KEY", "OPENROUTER_API_KEY"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("OPENAI_API_KEY", SECRET)
+    assert key_for("https://api.openai.com/v1") == SECRET
+    assert key_for("https://api.openai.com.evil.org/v1") == "" and key_for(LOCAL) == ""
+    monkeypatch.setenv("MINE", "another")
+    assert key_for(LOCAL, "MINE") == "another"
+
+
+# Names, settings, clients
+
+
+def test_names(monkeypatch):
+    assert read_name("llm:mini@http://host:1/v1/") == ("mini", "http://host:1/v1")
+    assert read_name("llm:org/mini:free@https://openrouter.ai/api/v1")[0] == "org/mini:free"
+    assert read_name("llm:mini") == ("mini", LOCAL)
+    monkeypatch.setenv("HEARTH_LLM_URL", "http://other/v1")
+    assert read_name("llm:mini") == ("mini", "http://other/v1")
+    for wrong in ("llm:", "llm:@http://x/v1", "llm:a b", "mini@http://x/v1"):
+        with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+            read_name(wrong)
+
+
+def test_settings():
+    asking, means = read_settings(["temperature=0.5", "memory=0", "constrained=yes", "tries=2"], None, "1,2", 3.0)
+    assert asking == Asking(0.5, memory=0, constrained=True) and (means.tries, means.prices, means.budget) == (
+        2,
+        (1, 2),
+        3,
+    )
+    for wrong in (
+        "heat=1",
+        "temperature=hot",
+        "temperature=nan",
+        "memory=-1",
+        "tries=0",
+        "constrained=perhaps",
+        "cache=x",
+    ):
+        with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+            read_settings([wrong])
+    for prices in ("1", "1,2,3", "a,b", "-1,2", "nan,1", "inf,1"):
+        with pytest.raises(HearthError, match="BAD_ARGUMENT"):
+            read_settings([], prices=prices)
+    with pytest.raises(HearthError, match="a budget needs prices"):
+        read_settings([], budget=1.0)
+
+
+class OfOpenAI:
+    """A client with the shape of that of the package `openai`."""
+
+    class chat:
+        class completions:
+            @staticmethod
+            def create(**body):
+                return type("Reply", (), {"model_dump": lambda self: reply(body["messages"][-1]["content"].upper())})()
+
+
+@pytest.mark.parametrize("client", [lambda messages: messages[-1]["content"].upper(), OfOpenAI()])
+def test_a_client_of_ones_own(client):
+    assert Endpoint(model="mine", client=client)("wait") == "WAIT"
+
+
+def test_a_client_that_fails_is_typed():
+    def fail(messages):
+        raise KeyError("what")
+
+    for client in (fail, lambda messages: None):
+        with pytest.raises(HearthError, match="NO_ANSWER: the client gave no reply"):
+            Endpoint(model="mine", client=client, means=Means(tries=1))("wait")
