@@ -6,7 +6,7 @@ from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent, made
-from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import LYING, SITTING, with_state
 from hearth.simulation.world.world import World
 
@@ -76,13 +76,7 @@ def _unoccupied(lying: bool, made_bed: bool) -> Check:
         fewer = f"fewer than {limit} on it{' besides bedding' if made_bed and edge_rows.turned_back(world, o) else ''}"
         return refuse(world, Code.OCCUPIED, fewer, str(taken.bit_count()), o, *indices(taken))
 
-    def mask(s: Situation, action: str) -> int:
-        places = indices(s.able(action) & s.close)
-        return mask_of(
-            i for i in places if edge_rows.taking_room(s.world, i, made_bed).bit_count() < s.home.limit(i, lying)
-        )
-
-    return Check(refusal, mask)
+    return Check(refusal, lambda s, action: s.with_room(s.able(action) & s.close, lying, made_bed))
 
 
 def _resting_on(name: str, lying: bool, already: Check, effect: Effect) -> Action:
