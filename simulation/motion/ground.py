@@ -124,7 +124,7 @@ class Ground:
 
     def reached(self, cell: int, doors: int) -> int:
         """Return the nodes at whose standing places one arrives from a cell while these doors are closed."""
-        region = self._regions(doors)
+        region = self.regions(doors)
         key = region[cell], doors
         if key not in self._reached:
             every = range(len(self.home))
@@ -133,11 +133,11 @@ class Ground:
 
     def joined(self, one: int, other: int, doors: int) -> bool:
         """Return whether a way leads from one cell to another while these doors are closed."""
-        region = self._regions(doors)
+        region = self.regions(doors)
         return region[one] == region[other]
 
-    def _regions(self, doors: int) -> list[int]:
-        """By cell the number of its region; cells that are not free have one of their own each."""
+    def regions(self, doors: int) -> list[int]:
+        """Return the number of each cell's region while some doors are closed; a cell that is not free has its own."""
         if doors not in self._numbered:
             free = self.floor.walkable.copy()
             free[tuple(self.ways.cells[list(self.shut(doors))].T)] = False

@@ -1,0 +1,141 @@
+"""The nodes that an agent is close to, and those that it comes close to where it walks.
+
+They read as `observation.reach` and `motion.positions` do. An agent's own row is CLOSE without distance: it stays as it is
+until the agent walks.
+"""
+
+# mypy: disable-error-code="no-untyped-def"
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from hearth.homes.plans.floor import REACH
+from hearth.simulation.arrays.kernels.floor import cell_at
+from hearth.simulation.arrays.kernels.places import agent_of, container, displaced
+from hearth.simulation.arrays.kernels.set_words import (
+    CLOSE,
+    CONTENTS,
+    ELSEWHERE,
+    EVERYTHING,
+    NEXT_TO,
+    NONE,
+    ON,
+    SEATS,
+    SURFACES,
+    WORN,
+    bit,
+    has,
+    kernel,
+    lowest,
+    put,
+    take,
+)
+from hearth.simulation.motion.navigation import BODY_RADIUS
+
+MEETING = REACH + BODY_RADIUS
+"""Metres within which two agents in one room are close."""
+
+
+@kernel
+def close_to(home, task, world, agent, keep, first, last, out):
+    """Write the nodes of some words to which an agent is close, directly or by one hop, as far as `keep` shows agents."""
+    mine = world.rows[agent, CLOSE]
+    base = home.close.shape[0]
+    for w in range(first, last):
+        out[w] = mine[w] & keep[w]
+    for v in range(mine.shape[0]):
+        rest = mine[v] & keep[v] & ~world.lifted[v]
+        while rest:
+            node = v * 64 + lowest(rest)
+            rest &= rest - np.uint64(1)
+            if node < base:
+                for w in range(first, last):
+                    out[w] |= (home.close[node, w] | home.bears[node, w]) & ~world.lifted[w]
+    for v in range(mine.shape[0]):
+        rest = world.lifted[v]
+        while rest:
+            node = v * 64 + lowest(rest)
+            rest &= rest - np.uint64(1)
+            place = world.place[home.slot[node]]
+            on, beside = np.int64(place[ON]), np.int64(place[NEXT_TO])
+            if first <= v < last and (_near(mine, keep, on) or _near(mine, keep, beside)):
+                put(out, node)
+            if beside >= 0 and first <= beside >> 6 < last and _near(mine, keep, node):
+                put(out, beside)
+    for other in range(world.room.shape[0]):
+        node = np.int64(task.agent[other])
+        if not has(keep, node):
+            continue
+        meets = False
+        for w in range(mine.shape[0]):
+            if mine[w] & keep[w] & (world.rows[other, CLOSE, w] | world.rows[other, SEATS, w]):
+                meets = True
+        if has(mine, node):
+            for w in range(first, last):
+                out[w] |= (world.rows[other, CLOSE, w] | world.rows[other, WORN, w]) & keep[w]
+        if meets and first <= node >> 6 < last:
+            put(out, node)
+
+
+@kernel
+def _near(mine, keep, node):
+    """Return whether a node is in an agent's row and shown; agents' edges to others are no hops for things."""
+    return node >= 0 and (mine[node >> 6] & keep[node >> 6] & bit(node)) != 0
+
+
+@kernel
+def near_point(home, task, world, agent, x, z, out):
+    """Write the things and agents within reach of a point; return the room that the point is in, or -1."""
+    words = world.lifted.shape[0]
+    cell = cell_at(home, x, z)
+    room = np.int64(-1) if cell < 0 else np.int64(home.cell_room[cell])
+    for w in range(words):
+        out[w] = NONE
+    if cell >= 0:
+        for w in range(words):
+            here = home.near[cell, w] & task.sets[EVERYTHING, w] & ~(task.sets[ELSEWHERE, w] & ~world.lifted[w])
+            rest = here & world.lifted[w]
+            while rest:
+                node = w * 64 + lowest(rest)
+                rest &= rest - np.uint64(1)
+                if displaced(home, task, world, node):
+                    here &= ~bit(node)
+            out[w] = here
+        for other in range(world.room.shape[0]):
+            for hand in range(2):
+                if world.hands[other, hand] >= 0:
+                    take(out, np.int64(world.hands[other, hand]))
+    for other in range(world.room.shape[0]):
+        if other != agent and room >= 0 and world.room[other] == room:
+            if math.hypot(world.pose[other, 0] - x, world.pose[other, 1] - z) <= MEETING:
+                put(out, np.int64(task.agent[other]))
+    return room
+
+
+@kernel
+def add_arrival(home, task, world, node, out):
+    """Add the nodes to which a walk to a node brings an agent: it, its container, things on it, agents at it."""
+    put(out, node)
+    if agent_of(task, world, node) >= 0:
+        return
+    inside = container(home, world, node)
+    if inside >= 0 and home.room_number[inside] < 0:
+        put(out, inside)
+    surface = has(task.sets[SURFACES], node)
+    if surface:
+        if node < home.bears.shape[0] and not has(world.lifted, node):
+            for w in range(out.shape[0]):
+                out[w] |= home.bears[node, w] & ~world.lifted[w]
+        for w in range(out.shape[0]):
+            rest = world.lifted[w]
+            while rest:
+                other = w * 64 + lowest(rest)
+                rest &= rest - np.uint64(1)
+                if world.place[home.slot[other], ON] == node:
+                    put(out, other)
+    for number in range(world.room.shape[0]):
+        if has(world.rows[number, CONTENTS], node) or (surface and has(world.rows[number, SEATS], node)):
+            put(out, np.int64(task.agent[number]))

@@ -1,0 +1,97 @@
+"""Sets of nodes as rows of 64-bit words, and how kernels are compiled.
+
+A set has a word for each 64 nodes. `home`, `task` and `world` are records (see `record_types`); a node or room that there
+is not is -1. Kernels are compiled at their first call and cached in the folder of the source, or in the user's cache
+folder if that is not writable; they release the interpreter's lock.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
+
+import numpy as np
+
+from hearth.schemas.optional_libraries import library
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+_njit = library("numba").njit
+_types = library("numba").types
+_intrinsic = library("numba.extending").intrinsic
+_ir = library("llvmlite.ir")
+
+
+_OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+"""Results are those of Python's floats, so there is no fast math. Kernels allocate nothing, so they count no references;
+that, and no wrappers for Python, makes compiling them three times as fast."""
+
+
+def kernel(function: F) -> F:
+    """Compile a function that other kernels call, at the first call."""
+    return cast(F, _njit(no_cpython_wrapper=True, **_OPTIONS)(function))
+
+
+def entry(function: F) -> F:
+    """Compile a function that Python calls, at the first call."""
+    return cast(F, _njit(**_OPTIONS)(function))
+
+
+def _lowest(typing: Any, word: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.cttz(arguments[0], _ir.Constant(_ir.IntType(1), 0))
+
+    return _types.int64(_types.uint64), generate
+
+
+def _count(typing: Any, word: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.ctpop(arguments[0])
+
+    return _types.int64(_types.uint64), generate
+
+
+lowest = _intrinsic(_lowest)
+"""The lowest bit of a word that is not 0."""
+
+count = _intrinsic(_count)
+"""The number of bits of a word."""
+
+CLOSE, FACING, SEATS, WORN, CONTENTS = range(5)
+"""An agent's own rows in a world."""
+
+ON, INSIDE, ROOM, NEXT_TO = range(4)
+"""The places of a lifted thing in a world: what it is ON, what it is in, its room, what it is CLOSE to."""
+
+ONE = np.uint64(1)
+NONE = np.uint64(0)
+ALL = ~np.uint64(0)
+
+EVERYTHING, ROOMS, DOORS, FURNITURE, BEDDING, LIEABLE, SURFACES, ELSEWHERE, HOLDERS, CARRIERS, RESTS, LEFT, MOVABLE = (
+    range(13)
+)
+"""Places of `action_table.KNOWN_SETS` in a task."""
+
+
+@kernel
+def bit(node):  # type: ignore[no-untyped-def]
+    """Return the word of a node's bit."""
+    return ONE << np.uint64(node & 63)
+
+
+@kernel
+def has(row, node):  # type: ignore[no-untyped-def]
+    """Return whether a set has a node; -1 is in no set."""
+    return node >= 0 and (row[node >> 6] & bit(node)) != 0
+
+
+@kernel
+def put(row, node):  # type: ignore[no-untyped-def]
+    """Add a node to a set."""
+    row[node >> 6] |= bit(node)
+
+
+@kernel
+def take(row, node):  # type: ignore[no-untyped-def]
+    """Take a node out of a set."""
+    row[node >> 6] &= ~bit(node)

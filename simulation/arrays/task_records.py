@@ -1,0 +1,199 @@
+"""A task as a record: the world in which it starts, its sets of nodes, and its goal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
+from hearth.schemas.literals import HOLDS
+from hearth.schemas.vocabulary import EVERY_STATE_ID, STATES
+from hearth.simulation.arrays.home_records import HomeShape, words
+from hearth.simulation.arrays.kernels.goals import IS_HELD, IS_INSIDE, IS_ON
+from hearth.simulation.arrays.kernels.set_words import INSIDE, NEXT_TO, ON, ROOM
+from hearth.simulation.arrays.record_types import ADDED, MOST_LITERALS, Bucket, task_type
+from hearth.simulation.goals import check
+from hearth.simulation.literal_truth import candidates
+from hearth.simulation.motion.ground import ground_of
+from hearth.simulation.world import edge_rows
+from hearth.simulation.world.bits import indices, lowest, mask_of
+from hearth.simulation.world.home import Home
+from hearth.simulation.world.states import SITTING
+from hearth.simulation.world.world import World
+
+RELATIONS = {"ON": IS_ON, "INSIDE": IS_INSIDE, HOLDS: IS_HELD}
+"""The relations of goals that kernels count."""
+
+REMEDY = "Env, HomeEnv or TextHomes, which play it"
+
+
+class Begin(NamedTuple):
+    """The start of a task.
+
+    Attributes:
+        name: of the task, for messages.
+        world: in which it starts.
+        goal: its goal.
+    """
+
+    name: str
+    world: World
+    goal: Goal
+
+
+def base_of(home: Home) -> Home:
+    """Return the home whose record a task uses: without the nodes that the task adds, where they were just added."""
+    if home.base is None or len(home) - len(home.base[0]) > ADDED or _differs(home, home.base[0]):
+        return home
+    return home.base[0]
+
+
+def _differs(home: Home, base: Home) -> bool:
+    """Return whether a home differs from its base in more than added nodes and their edges."""
+    first = len(base)
+    old = (1 << first) - 1
+    touched = indices(home.base[1] & old) if home.base else iter(())
+    return home.absent != base.absent or any(
+        row[i] & old != before[i] for i in touched for row, before in zip(home.rows, base.rows, strict=True)
+    )
+
+
+def index_in_record(home: Home, shape: HomeShape, bucket: Bucket, i: int) -> int:
+    """Return the index that a node of a task's home has in records."""
+    first = len(shape.home)
+    return i if i < first else bucket.first_added + i - first
+
+
+def task_record(begin: Begin, number: int, shape: HomeShape, bucket: Bucket, sets: Sequence[str]) -> Any:
+    """Return the record of a task in a home.
+
+    Args:
+        begin: its start.
+        number: of its home's record.
+        shape: its home.
+        bucket: the sizes.
+        sets: names of the sets that its record has.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: its goal or its start is out of scope.
+    """
+    world = begin.world
+    home, first = world.home, len(shape.home)
+    record = np.zeros(1, task_type(bucket, len(world.agents)))[0]
+    record["home"] = number
+    record["agent"] = [index_in_record(home, shape, bucket, agent.index) for agent in world.agents]
+    for i in range(first, len(home)):
+        record["added_limits"][i - first] = home.limit(i), home.limit(i, lying=True)
+    for place, name in enumerate(sets):
+        record["sets"][place] = words(_set(name, home, shape), first, bucket)
+    _start(record["start"], begin, shape, bucket)
+    _goal(record, begin, first, bucket)
+    return record
+
+
+def _set(name: str, home: Home, shape: HomeShape) -> int:
+    """Return a set of nodes by the name that tables of actions have."""
+    kind, _, rest = name.partition("_")
+    if kind == "able":
+        action, _, position = rest.rpartition("_")
+        return home.able(action, int(position))
+    if kind == "property":
+        return home.properties[rest]
+    if name == "elsewhere":
+        here = ground_of(home)
+        assert here is not None
+        return here.elsewhere
+    if name == "holders":
+        return mask_of(i for i, base in enumerate(shape.home.bears) if base | shape.home.contents[i])
+    if name == "movable":
+        return mask_of(shape.movable) | home.everything & ~home.characters & -1 << len(shape.home)
+    if name == "carriers":
+        return _set("holders", home, shape) & mask_of(shape.movable)
+    if name == "rests":
+        known = home.knowledge
+        return mask_of(i for action in known.group("rests") for i in indices(home.able(action)))
+    if name == "seats":
+        return edge_rows.seats(home)
+    found: int = getattr(home, name)
+    return found
+
+
+def _start(record: Any, begin: Begin, shape: HomeShape, bucket: Bucket) -> None:
+    """Fill the record of the world in which a task starts."""
+    world, first = begin.world, len(shape.home)
+    home, moved = world.home, begin.world.moved
+    if not moved.on == moved.inside == moved.close or moved.facing:
+        raise _unfit(begin, "its start has single edges that came or went")
+    lifted = moved.on | home.everything & ~home.characters & -1 << first
+    for state in range(SITTING):
+        record["states"][state] = words(world.states[state], first, bucket)
+    record["lifted"], record["place"] = words(lifted, first, bucket), -1
+    slots = {i: number for number, i in enumerate(shape.movable)}
+    for i in indices(lifted):
+        slot = slots[i] if i in slots else bucket.movable + i - first if i >= first else None
+        if slot is None:
+            raise _unfit(begin, f"its start has moved {home.classes[i]} ({home.ids[i]}), which nobody can grab")
+        record["place"][slot] = _place(begin, shape, bucket, i)
+    _unmoved(begin, lifted)
+    for number, agent in enumerate(world.agents):
+        if agent.pose is None or world.states[SITTING] & agent.bit or any((*agent[2:5], *agent[6:11])):
+            raise _unfit(begin, f"its agent {number} does not stand in a room with empty hands and no edges")
+        record["pose"][number], record["stride"][number] = agent.pose, agent.stride
+        record["room"][number] = lowest(agent.inside)
+    record["hands"] = -1
+
+
+def _place(begin: Begin, shape: HomeShape, bucket: Bucket, i: int) -> tuple[int, ...]:
+    """Return what a moved or added thing is ON, in, its room, and what it is CLOSE to."""
+    world = begin.world
+    inside = edge_rows.inside(world, i)
+    rows = {
+        ON: edge_rows.on(world, i), INSIDE: inside & ~world.home.rooms, ROOM: inside & world.home.rooms,
+        NEXT_TO: edge_rows.close(world, i),
+    }  # fmt: skip
+    if any(row.bit_count() > 1 for row in rows.values()) or edge_rows.facing(world, i) | edge_rows.faced(world, i):
+        raise _unfit(begin, f"its {world.home.classes[i]} ({world.home.ids[i]}) is at several places")
+    return tuple(
+        index_in_record(world.home, shape, bucket, lowest(rows[k])) if rows[k] else -1
+        for k in (ON, INSIDE, ROOM, NEXT_TO)
+    )
+
+
+def _unmoved(begin: Begin, lifted: int) -> None:
+    """Refuse a start in which a thing that did not move has new edges to another such thing."""
+    for key, row in begin.world.moved.extra.items():
+        if not lifted >> (key >> 3) & 1 and row & ~lifted:
+            name = begin.world.home.classes[key >> 3]
+            raise _unfit(begin, f"its start has new edges of {name} ({begin.world.home.ids[key >> 3]})")
+
+
+def _goal(record: Any, begin: Begin, first: int, bucket: Bucket) -> None:
+    """Fill the goal of a task."""
+    home, goal = begin.world.home, begin.goal
+    if goal.parts or len(goal.counts) > MOST_LITERALS or not goal.counts:
+        what = "joins goals by words" if goal.parts else f"has {len(goal.counts)} literals of 1 to {MOST_LITERALS}"
+        raise _unfit(begin, f"its goal {what}")
+    record["literals"] = len(goal.counts)
+    for k, (literal, wanted) in enumerate(goal):
+        if fault := check(literal, home):
+            raise HearthError.of(fault[1], f"task {begin.name}: goal {literal}: {fault[0]}", suggestion=fault[2])
+        some = candidates(literal, home)
+        things = some.subjects & ~home.characters
+        state = len(literal.terms) == 1 and EVERY_STATE_ID.get(literal.name, len(STATES)) < len(STATES)
+        related = len(literal.terms) > 1 and literal.name in RELATIONS and (some.by_target or literal.name != HOLDS)
+        if not (state or related) or (not some.by_target and not state and things != some.subjects):
+            raise _unfit(begin, f"its goal has {literal}, which is not about a state, ON, INSIDE or hands")
+        record["kind"][k] = EVERY_STATE_ID[literal.name] if state else RELATIONS[literal.name]
+        record["wanted"][k], record["negated"][k] = some.needed(wanted), literal.negated
+        record["by_target"][k], record["rewarded"][k] = some.by_target, wanted
+        record["subjects"][k] = words(some.subjects, first, bucket)
+        record["targets"][k] = words(some.targets, first, bucket)
+    record["wanted_in_all"] = record["rewarded"].sum()
+
+
+def _unfit(begin: Begin, what: str) -> HearthError:
+    return HearthError.of(Code.BAD_ARGUMENT, f"task {begin.name}: {what}, which arrays do not have", suggestion=REMEDY)
