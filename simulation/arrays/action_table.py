@@ -113,7 +113,7 @@ def action_table(names: Iterable[str], knowledge: Knowledge, rules: Rules) -> Ac
     """Return the table of some actions.
 
     Raises:
-        HearthError: UNKNOWN_ACTION; BAD_ARGUMENT: an action needs a kernel that there is not, or a rule is out of scope.
+        HearthError: UNKNOWN_ACTION; BAD_ARGUMENT: an action lacks a kernel, or a rule is out of scope.
     """
     _check_rules(rules)
     chosen = sorted(set(names))

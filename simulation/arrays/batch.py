@@ -45,6 +45,10 @@ class Payment(NamedTuple):
     predicate: float = 0.0
 
 
+USUAL = Payment()
+"""1 for the goal, and -0.004 a tick."""
+
+
 @dataclass
 class Observed:
     """The arrays that kernels write, by world and agent; each step overwrites them.
@@ -102,7 +106,7 @@ class Batch:
         rules: Rules = DEFAULT,
         partial: bool = True,
         limit: int = 250,
-        payment: Payment = Payment(),
+        payment: Payment = USUAL,
         seed: int = 0,
         threads: int = 1,
         bucket: Bucket | None = None,
@@ -253,7 +257,8 @@ class Batch:
         """Return the instruction of a number; None to wait, and where a number means nothing now."""
         plane, index = divmod(number - FIRST_NODE_NUMBER, self.bucket.nodes)
         row = number if number < FIRST_NODE_NUMBER else self.table.first_plane + plane
-        if row == 0 or row >= len(self.table.of_row):
+        known = row < (self.table.first_plane if number < FIRST_NODE_NUMBER else len(self.table.of_row))
+        if row == 0 or not known:
             return None
         found = self.table.of_row[row]
         assert found is not None

@@ -1,7 +1,7 @@
 """Distance fields of a batch, computed when a kernel first needs them.
 
-While doors are closed, the way to a target is the open one wherever that passes none of them. A field is therefore shared
-by all sets of closed doors that turn no way.
+While doors are closed, the way to a target is the open one wherever that passes none of them. So all sets of closed
+doors that turn no way share a field.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ class DistancePool:
 
     Attributes:
         rows: by home, key and closed doors the number of the field; 0 where it is not computed.
-        distance, following: by field and cell, as of `navigation.Field`; field 0 is of a target in the agent's own cell.
+        distance, following: by field and cell, as of `navigation.Field`; field 0 is of the own cell.
         computed: how many fields there are.
     """
 
@@ -85,7 +85,6 @@ class DistancePool:
         if len(ends) < len(self._ends(home, key)):
             return True
         comes = np.isin(region, region[ends])
-        comes[list(shut)] = False
         return bool((self._passing(home, key)[comes] & closed).any())
 
     def _passing(self, home: int, key: int) -> np.ndarray:

@@ -60,7 +60,7 @@ class HomeShape:
             "rooms": len(self.rooms),
             "cells": len(ways.cells),
             "grid": max(ways.number.shape) + 2,
-            "regions": len(set(self.ground.regions(closed))),
+            "regions": 1 + max(max(self.ground.regions(each)) for each in (0, closed)),
             "movable": len(self.movable),
             "targets": len(self.targets),
             "stands": sum(map(len, self.targets)),
@@ -213,9 +213,10 @@ def _doors(record: Any, shape: HomeShape, bucket: Bucket) -> None:
         record["between"][k] = sum(1 << number[room] for room in indices(home.between[door] & home.rooms))
     for closed in range(1 << len(shape.doors)):
         mask = sum(1 << door for k, door in enumerate(shape.doors) if closed >> k & 1)
-        _, region = np.unique(ground.regions(mask), return_inverse=True)
+        region = np.maximum(ground.regions(mask), 0)  # 0 is that of all cells that are not free
         record["region"][closed, :cells] = region
         np.bitwise_or.at(record["reached"][closed], (region[at], nodes >> 6), bits)
+        record["reached"][closed, 0] = 0
         _walks(record, shape, bucket, closed, mask, first)
 
 

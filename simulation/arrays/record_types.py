@@ -30,7 +30,7 @@ class Bucket(NamedTuple):
         words: words of 64 nodes of a home, without those that a task adds.
         doors, rooms, cells: of a home.
         grid: cells of a floor's grid along each axis, border included.
-        regions: parts that closed doors divide the floor into, each cell of a doorway counted.
+        regions: parts that closed doors divide the floor into, and one for the cells of closed doorways.
         movable: things of a home that can be grabbed.
         targets: different sets of cells at which one stands for something.
         stands: cells of all these sets together.
@@ -64,9 +64,9 @@ class Bucket(NamedTuple):
 
 
 BUCKETS = (
-    Bucket("small", 6, 4, 6, 4096, 128, 96, 224, 256, 16384),
-    Bucket("medium", 9, 7, 8, 5120, 144, 160, 288, 352, 24576),
-    Bucket("large", 11, MOST_DOORS, 10, 6144, 160, 224, 352, 448, 32768),
+    Bucket("small", 6, 4, 6, 4608, 144, 16, 224, 256, 6400),
+    Bucket("medium", 9, 7, 8, 6144, 152, 16, 288, 352, 9216),
+    Bucket("large", 11, MOST_DOORS, 10, 8192, 176, 24, 352, 448, 12288),
 )
 """From small to large; a batch takes the first that has room for all its homes."""
 
@@ -111,7 +111,7 @@ def world_type(b: Bucket, agents: int) -> np.dtype[np.void]:
             ("rows", "u8", (agents, 5, w)),  # the agents' own edges: `CLOSE` ... `CONTENTS` of `kernels.set_words`
             ("pose", "f8", (agents, 3)), ("stride", "f8", (agents,)),
             ("seed", "u8"), ("task", "i4"), ("tick", "i4"), ("episode", "i4"), ("total", "i4"), ("waiting", "i4"),
-            ("place", "i2", (b.movable + ADDED, 4)),  # of lifted things: what it is ON, in, its room, what it is CLOSE to
+            ("place", "i2", (b.movable + ADDED, 4)),  # of lifted things: ON, in, room, CLOSE to
             ("room", "i2", (agents,)), ("hands", "i2", (agents, 2)), ("last", "i4", (agents, 2)),
             ("counts", "i2", (MOST_LITERALS,)), ("posture", "u1", (agents,)), ("possible", "u1", (agents,)),
             ("met", "u1"), ("restated", "u1"),

@@ -21,7 +21,7 @@ WHOLE = 25
 """Ticks after which the edges of all things are compared, and not only those of things that moved."""
 
 EXACT = 1e-9
-"""Metres and degrees by which poses may differ: both compute them with floats of 64 bits, but not by the same library."""
+"""Metres and degrees by which poses may differ: both are floats of 64 bits, but from different libraries."""
 
 
 @dataclass
@@ -64,7 +64,7 @@ def paired(batch: Batch, rewards: Rewards) -> list[Pair]:
 
 
 def chosen(batch: Batch, rng: np.random.Generator, wild: float) -> np.ndarray:
-    """Return a number for each agent: legal, equally often of each action; or anything at all, with some probability."""
+    """Return a number for each agent: half of them of an action drawn first; some of them anything at all."""
     numbers = np.zeros((len(batch), batch.agents), np.int64)
     nodes, first = batch.bucket.nodes, 64
     for world, agent in np.ndindex(numbers.shape):

@@ -1,7 +1,6 @@
 """The effects of actions that literals do not say: grabbing, putting, resting, rising, turning and walking.
 
-Each follows its record in `simulation.actions`, beside which CONTRIBUTING asks for a kernel here; the tests of exactness
-hold the two together.
+Each follows its record in `simulation.actions`; the tests of exactness hold the two together.
 """
 
 # mypy: disable-error-code="no-untyped-def"

@@ -34,7 +34,7 @@ def cell_at(home, x, z):
 
 @kernel
 def cells_around(home, x, z, cells):
-    """Write the cells to whose middles one can go straight from a point, in the order of `Ways.around`; their number."""
+    """Write the cells to whose middles one can go straight from a point, as `Ways.around` lists them; their number."""
     size = home.origin[2]
     u, v = (x - home.origin[0]) / size + 0.5, (z - home.origin[1]) / size + 0.5
     i, j = int(math.floor(u + 1e-6)), int(math.floor(v + 1e-6))
@@ -105,7 +105,7 @@ def leads(home, key, place, doors, cell):
     region = home.region[doors, cell]
     if place >= 0:
         return has(home.reached[doors, region], place)
-    return region == home.region[doors, key - (home.first_stand.shape[0] - 1)]
+    return region > 0 and region == home.region[doors, key - (home.first_stand.shape[0] - 1)]
 
 
 @kernel

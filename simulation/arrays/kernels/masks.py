@@ -1,7 +1,7 @@
 """Legal actions: the programs of masks (see `mask_tracing`), run over the sets of a situation.
 
-`fill_all` computes these sets for all nodes as an agent sees the world, `fill_one` for one node in the world as it is. Both
-readings of a set stand together, as in `actions.common`.
+`fill_all` computes these sets for all nodes as an agent sees the world, `fill_one` for one node in the world as it is.
+Both readings of a set stand together, as in `actions.common`.
 """
 
 # mypy: disable-error-code="no-untyped-def"
@@ -52,8 +52,8 @@ from hearth.simulation.arrays.mask_tracing import AND, DYNAMIC, NOT
 from hearth.simulation.world.states import LYING, SITTING
 
 (
-    _ZERO, _ONES, _ME, _WORN, _ROOM_TO_SIT, _ROOM_TO_LIE, _FREE_HAND, _SITTING, _LYING, _RESTING, _AHEAD, _CLOSE, _HIDDEN,
-    _HELD, _WALKABLE, _WALKED_TO, _HELD_BY_OTHERS, _FULL_HANDED, _IN_USE, _STATES,
+    _ZERO, _ONES, _ME, _WORN, _ROOM_TO_SIT, _ROOM_TO_LIE, _FREE_HAND, _SITTING, _LYING, _RESTING, _AHEAD, _CLOSE,
+    _HIDDEN, _HELD, _WALKABLE, _WALKED_TO, _HELD_BY_OTHERS, _FULL_HANDED, _IN_USE, _STATES,
 ) = (*range(19), 19)  # fmt: skip
 assert DYNAMIC[_STATES] == "state_CLOSED" and DYNAMIC[_IN_USE] == "in_use" and DYNAMIC[_AHEAD] == "ahead"
 

@@ -1,7 +1,7 @@
 """The nodes that an agent is close to, and those that it comes close to where it walks.
 
-They read as `observation.reach` and `motion.positions` do. An agent's own row is CLOSE without distance: it stays as it is
-until the agent walks.
+They read as `observation.reach` and `motion.positions` do. CLOSE is no distance: an agent's row stays as it is until
+the agent walks.
 """
 
 # mypy: disable-error-code="no-untyped-def"
@@ -41,7 +41,7 @@ MEETING = REACH + BODY_RADIUS
 
 @kernel
 def close_to(home, task, world, agent, keep, first, last, out):
-    """Write the nodes of some words to which an agent is close, directly or by one hop, as far as `keep` shows agents."""
+    """Write the nodes of some words to which an agent is close, directly or by one hop; `keep` shows other agents."""
     mine = world.rows[agent, CLOSE]
     base = home.close.shape[0]
     for w in range(first, last):

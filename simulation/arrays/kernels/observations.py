@@ -19,7 +19,7 @@ SPREAD = np.array([sum((byte >> k & 1) << 8 * k for k in range(8)) for byte in r
 AGENT_COLUMNS = (
     "seen", "x", "z", "sine", "cosine", "sitting", "lying", "right", "left", "room", "last", "done",
 )  # fmt: skip
-"""Columns of `agents`: position in metres and direction; nodes in hands + 1; the number of the room; the last number tried
+"""Columns of `agents`: position in metres, direction, posture; nodes in hands + 1; room + 1; the last number tried
 and whether it was done. All are 0 of an agent that is not seen; only an agent itself knows its last number."""
 
 _CLOSE = DYNAMIC.index("close")

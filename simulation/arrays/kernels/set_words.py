@@ -1,7 +1,7 @@
 """Sets of nodes as rows of 64-bit words, and how kernels are compiled.
 
-A set has a word for each 64 nodes. `home`, `task` and `world` are records (see `record_types`); a node or room that there
-is not is -1. Kernels are compiled at their first call and cached in the folder of the source, or in the user's cache
+A set has a word for each 64 nodes. `home`, `task` and `world` are records (see `record_types`); no node and no room are
+-1. Kernels are compiled at their first call and cached in the folder of the source, or in the user's cache
 folder if that is not writable; they release the interpreter's lock.
 """
 
@@ -23,8 +23,8 @@ _ir = library("llvmlite.ir")
 
 
 _OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
-"""Results are those of Python's floats, so there is no fast math. Kernels allocate nothing, so they count no references;
-that, and no wrappers for Python, makes compiling them three times as fast."""
+"""Results are those of Python's floats, so there is no fast math. Kernels allocate nothing, so they count no
+references, and have no wrappers for Python, so that they compile sooner."""
 
 
 def kernel(function: F) -> F:

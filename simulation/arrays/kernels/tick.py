@@ -150,7 +150,7 @@ def tick(home, task, world, numbers, table, fields, missing, scratch, registers,
 @kernel
 def look(home, task, world, agent, table, partial, keep, planes, scratch, registers, cells):
     """Write the nodes that an agent sees and its legal numbers."""
-    rows, program, read, first_plane, made_bed = table
+    rows, program, read, _, made_bed = table
     inner = scratch[4]
     if partial:
         visible(home, task, world, agent, keep, inner, scratch)
