@@ -1,5 +1,6 @@
 from duckdb import DuckDBPyConnection
 
+from hearth.challenges.array_homes import ArrayHomes as ArrayHomes
 from hearth.datasets.dataset import Dataset as Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export

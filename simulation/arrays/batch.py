@@ -26,7 +26,7 @@ from hearth.simulation.arrays.kernels.tick import (
     STEP,
     advance,
 )
-from hearth.simulation.arrays.record_types import ADDED, Bucket, world_type
+from hearth.simulation.arrays.record_types import ADDED, MOST_AGENTS, Bucket, world_type
 from hearth.simulation.arrays.task_records import Begin, base_of, index_in_record, task_record
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.home import Home
@@ -142,8 +142,7 @@ class Batch:
     def _allocate(self, worlds: int, seed: int) -> None:
         bucket, count, agents = self.bucket, worlds, self.agents
         self.size = self.table.size(bucket.nodes)
-        self.worlds = np.zeros(count, world_type(bucket, agents))
-        self.worlds["seed"] = np.arange(count, dtype=np.uint64) + np.uint64(seed) * np.uint64(1_000_003)
+        self.worlds = np.zeros(count, world_type(bucket))
         self._shown = (
             np.zeros((count, agents, bucket.width), np.uint64),
             np.zeros((count, agents, self.table.planes + 1, bucket.width), np.uint64),
@@ -161,18 +160,27 @@ class Batch:
         self._numbers = np.zeros((count, agents), np.int64)
         self.every = np.arange(count)
         self.choose = np.arange(len(self.begins), dtype=np.int32)
+        self.reseed(seed)
 
     def __len__(self) -> int:
         return len(self.worlds)
 
+    def reseed(self, seed: int) -> None:
+        """Let the next episodes be the first ones of a seed."""
+        self.worlds["seed"] = np.arange(len(self), dtype=np.uint64) + np.uint64(seed % 2**32) * np.uint64(1_000_003)
+        self.worlds["episode"] = 0
+
     def reset(self, which: NDArray[np.int64] | None = None, level: int = ARRAYS) -> None:
         """Begin the next episodes of some worlds, or of all, with tasks drawn from their seeds."""
         some = self.every if which is None else which
-        now = self.worlds[some]
-        seeds, episodes = now["seed"], now["episode"]
-        tasks = self.choose[mixed(seeds, episodes) % np.uint64(len(self.choose))]
+        drawn = mixed(self.worlds["seed"][some], self.worlds["episode"][some]) % np.uint64(len(self.choose))
+        self.begin_tasks(self.choose[drawn], some, level)
+
+    def begin_tasks(self, tasks: NDArray[Any], which: NDArray[np.int64] | None = None, level: int = ARRAYS) -> None:
+        """Begin the next episodes of some worlds, or of all, with these tasks."""
+        some = self.every if which is None else which
         now = self.tasks["start"][tasks]
-        now["seed"], now["episode"], now["task"] = seeds, episodes + 1, tasks
+        now["seed"], now["episode"], now["task"] = self.worlds["seed"][some], self.worlds["episode"][some] + 1, tasks
         self.worlds[some] = now
         self._run(LOOK, level, some)
 
@@ -240,6 +248,15 @@ class Batch:
         """Return the home of a world's task, with the nodes that the task adds."""
         return self.begins[self.worlds["task"][world]].world.home
 
+    def classes(self, task: int) -> list[str]:
+        """Return the class of each node of a task by index in records, "" where there is none."""
+        home, first = self.begins[task].world.home, len(self.shapes[self._home_of[task]].home)
+        found = [""] * self.bucket.nodes
+        for i, name in enumerate(home.classes):
+            if home.everything >> i & 1:
+                found[i if i < first else self.bucket.first_added + i - first] = name
+        return found
+
     def node_id(self, world: int, index: int) -> int | None:
         """Return the id of the node of an index in records; None where there is none."""
         home, shape = self.home_of(world), self.shapes[self._home_of[self.worlds["task"][world]]]
@@ -292,7 +309,8 @@ def _agents(begins: Sequence[Begin]) -> int:
         HearthError: BAD_ARGUMENT: there is no start, or they differ.
     """
     counts = sorted({len(begin.world.agents) for begin in begins})
-    if len(counts) != 1 or not counts[0]:
+    if len(counts) != 1 or not 1 <= counts[0] <= MOST_AGENTS:
         message = f"{len(begins)} tasks with {' or '.join(map(str, counts)) or 'no'} agents"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="tasks that all have the same number of agents")
+        remedy = f"tasks that all have the same number of agents, 1 to {MOST_AGENTS}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
     return counts[0]

@@ -12,6 +12,9 @@ import numpy as np
 ADDED = 64
 """Nodes that a task may add to its home, agents included: one word of a set."""
 
+MOST_AGENTS = 2
+"""Agents of one world. Records have room for all of them, so that kernels are the same for one and for two."""
+
 MOST_SETS = 40
 """Sets of nodes that never change, of one task."""
 
@@ -100,9 +103,9 @@ def home_type(b: Bucket) -> np.dtype[np.void]:
     )  # fmt: skip
 
 
-def world_type(b: Bucket, agents: int) -> np.dtype[np.void]:
+def world_type(b: Bucket) -> np.dtype[np.void]:
     """Return the record of a world: all that changes in it."""
-    w = b.width
+    w, agents = b.width, MOST_AGENTS
     return np.dtype(
         [
             ("states", "u8", (8, w)),  # of things; the agents' own are `posture`
@@ -120,18 +123,18 @@ def world_type(b: Bucket, agents: int) -> np.dtype[np.void]:
     )  # fmt: skip
 
 
-def task_type(b: Bucket, agents: int) -> np.dtype[np.void]:
+def task_type(b: Bucket) -> np.dtype[np.void]:
     """Return the record of a task: its home, its sets, its goal and the world in which it starts."""
     w = b.width
     return np.dtype(
         [
-            ("home", "i4"), ("literals", "i4"), ("wanted_in_all", "i4"), ("agent", "i2", (agents,)),
+            ("home", "i4"), ("agents", "i8"), ("literals", "i4"), ("agent", "i2", (MOST_AGENTS,)),
             ("added_limits", "i2", (ADDED, 2)), ("sets", "u8", (MOST_SETS, w)),
             ("kind", "i2", (MOST_LITERALS,)), ("wanted", "i2", (MOST_LITERALS,)),
             ("rewarded", "i2", (MOST_LITERALS,)), ("negated", "u1", (MOST_LITERALS,)),
             ("by_target", "u1", (MOST_LITERALS,)),
             ("subjects", "u8", (MOST_LITERALS, w)), ("targets", "u8", (MOST_LITERALS, w)),
-            ("start", world_type(b, agents)),
+            ("start", world_type(b)),
         ],
         align=True,
     )  # fmt: skip

@@ -16,7 +16,7 @@ from hearth.simulation.arrays.home_records import HomeShape, words
 from hearth.simulation.arrays.kernels.goals import IS_HELD, IS_INSIDE, IS_ON
 from hearth.simulation.arrays.kernels.set_words import INSIDE, NEXT_TO, ON, ROOM
 from hearth.simulation.arrays.record_types import ADDED, MOST_LITERALS, Bucket, task_type
-from hearth.simulation.goals import check
+from hearth.simulation.goals import Progress, check
 from hearth.simulation.literal_truth import candidates
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world import edge_rows
@@ -83,9 +83,11 @@ def task_record(begin: Begin, number: int, shape: HomeShape, bucket: Bucket, set
     """
     world = begin.world
     home, first = world.home, len(shape.home)
-    record = np.zeros(1, task_type(bucket, len(world.agents)))[0]
-    record["home"] = number
-    record["agent"] = [index_in_record(home, shape, bucket, agent.index) for agent in world.agents]
+    record = np.zeros(1, task_type(bucket))[0]
+    record["home"], record["agents"] = number, len(world.agents)
+    record["agent"] = -1
+    for k, agent in enumerate(world.agents):
+        record["agent"][k] = index_in_record(home, shape, bucket, agent.index)
     for i in range(first, len(home)):
         record["added_limits"][i - first] = home.limit(i), home.limit(i, lying=True)
     for place, name in enumerate(sets):
@@ -192,7 +194,12 @@ def _goal(record: Any, begin: Begin, first: int, bucket: Bucket) -> None:
         record["by_target"][k], record["rewarded"][k] = some.by_target, wanted
         record["subjects"][k] = words(some.subjects, first, bucket)
         record["targets"][k] = words(some.targets, first, bucket)
-    record["wanted_in_all"] = record["rewarded"].sum()
+    progress = Progress.at(goal, begin.world)
+    record["start"]["counts"][: len(goal.counts)] = progress.counts
+    record["start"]["total"] = sum(
+        min(found, wanted) for found, (_, wanted) in zip(progress.counts, goal.counts, strict=True)
+    )
+    record["start"]["met"] = progress.satisfied
 
 
 def _unfit(begin: Begin, what: str) -> HearthError:

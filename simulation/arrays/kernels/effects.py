@@ -49,7 +49,7 @@ def become(world, state, node):
 def meet(task, world, agent):
     """Let the others be close to an agent where it is close to them, and only there: `agent.replaced`."""
     me = np.int64(task.agent[agent])
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         if other != agent:
             if has(world.rows[agent, CLOSE], np.int64(task.agent[other])):
                 put(world.rows[other, CLOSE], me)
@@ -112,7 +112,7 @@ def lift(home, task, world, agent, node):
     place[ON] = place[INSIDE] = place[NEXT_TO] = -1
     place[ROOM] = world.room[agent]
     put(world.lifted, node)
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         if other != agent:
             take(world.rows[other, CLOSE], node)
         for row in (SEATS, WORN, CONTENTS):
@@ -220,7 +220,7 @@ def _gone(home, task, world, agent, near, room, x, z, yaw):
         world.rows[agent, FACING, w] = world.rows[agent, CONTENTS, w] = NONE
     world.room[agent] = room
     world.pose[agent, 0], world.pose[agent, 1], world.pose[agent, 2] = x, z, yaw
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         if other == agent:
             continue
         for row in (CLOSE, FACING, CONTENTS):

@@ -200,7 +200,7 @@ def walkable(home, task, world, agent, keep, doors, first, last, out):
         else:
             out[w] = home.walkable[0, 0, w] & ~world.lifted[w]
         rest = world.lifted[w] & keep[w]
-        for number in range(world.room.shape[0]):
+        for number in range(task.agents):
             node = np.int64(task.agent[number])
             if node >> 6 == w:
                 out[w] &= ~bit(node)
@@ -225,7 +225,7 @@ def walked_to(home, task, world, agent, keep, doors, first, last, cells, out):
         for number in range(around):
             out[w] |= home.reached[doors, home.region[doors, cells[number]], w]
         rest = (world.lifted[w] | task.sets[ELSEWHERE, w]) & keep[w]
-        for number in range(world.room.shape[0]):
+        for number in range(task.agents):
             node = np.int64(task.agent[number])
             if node >> 6 == w:
                 rest |= keep[w] & bit(node)

@@ -51,7 +51,7 @@ def _in_state(task, world, k):
     kind, found = np.int64(task.kind[k]), 0
     for w in range(world.lifted.shape[0]):
         row = world.states[kind, w] if kind < SITTING else NONE
-        for agent in range(world.room.shape[0]):
+        for agent in range(task.agents):
             node = np.int64(task.agent[agent])
             if kind >= SITTING and np.int64(world.posture[agent]) == kind and node >> 6 == w:
                 row |= bit(node)
@@ -63,7 +63,7 @@ def _in_state(task, world, k):
 def _of_agents(home, task, world, k):
     """Count, for each agent among the subjects, the targets of its edges."""
     kind, found = np.int64(task.kind[k]), 0
-    for agent in range(world.room.shape[0]):
+    for agent in range(task.agents):
         if not has(task.subjects[k], np.int64(task.agent[agent])):
             continue
         if kind == IS_ON:
@@ -96,7 +96,7 @@ def _of_things(home, task, world, k):
                 holds = has(task.targets[k], container(home, world, node)) or has(
                     task.targets[k], _direct_room(home, world, node)
                 )
-            for agent in range(world.room.shape[0]):
+            for agent in range(task.agents):
                 if has(task.targets[k], np.int64(task.agent[agent])):
                     holds = holds or has(world.rows[agent, WORN if kind == IS_ON else CONTENTS], node)
             found += holds

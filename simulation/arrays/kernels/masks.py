@@ -80,7 +80,7 @@ def seat_taken(home, task, world, keep, node, made_bed):
             rest &= rest - np.uint64(1)
             if world.place[home.slot[other], ON] == node:
                 found += 1
-    for agent in range(world.room.shape[0]):
+    for agent in range(task.agents):
         me = np.int64(task.agent[agent])
         if has(keep, me) and has(world.rows[agent, SEATS], node):
             found += 1
@@ -120,7 +120,7 @@ def _fill_agents(task, world, agent, keep, first, last, registers):
         for state in range(8):
             registers[_STATES + state, w] = world.states[state, w] & keep[w]
         registers[_STATES + SITTING, w] = registers[_STATES + LYING, w] = NONE
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         node = np.int64(task.agent[other])
         if not has(keep, node):
             continue

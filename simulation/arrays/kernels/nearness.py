@@ -65,7 +65,7 @@ def close_to(home, task, world, agent, keep, first, last, out):
                 put(out, node)
             if beside >= 0 and first <= beside >> 6 < last and _near(mine, keep, node):
                 put(out, beside)
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         node = np.int64(task.agent[other])
         if not has(keep, node):
             continue
@@ -104,11 +104,11 @@ def near_point(home, task, world, agent, x, z, out):
                 if displaced(home, task, world, node):
                     here &= ~bit(node)
             out[w] = here
-        for other in range(world.room.shape[0]):
+        for other in range(task.agents):
             for hand in range(2):
                 if world.hands[other, hand] >= 0:
                     take(out, np.int64(world.hands[other, hand]))
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         if other != agent and room >= 0 and world.room[other] == room:
             if math.hypot(world.pose[other, 0] - x, world.pose[other, 1] - z) <= MEETING:
                 put(out, np.int64(task.agent[other]))
@@ -136,6 +136,6 @@ def add_arrival(home, task, world, node, out):
                 rest &= rest - np.uint64(1)
                 if world.place[home.slot[other], ON] == node:
                     put(out, other)
-    for number in range(world.room.shape[0]):
+    for number in range(task.agents):
         if has(world.rows[number, CONTENTS], node) or (surface and has(world.rows[number, SEATS], node)):
             put(out, np.int64(task.agent[number]))

@@ -54,7 +54,7 @@ def observe(home, task, world, agent, keep, planes, registers, shown, i, limit):
             if place < 0:
                 place = container(home, world, node)
             places[i, agent, home.slot[node]] = place + 1
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         _agent(home, task, world, agent, other, keep, agents[i, agent, other])
     time[i, agent] = np.float32(world.tick / limit)
 

@@ -43,7 +43,7 @@ def container(home, world, node):
 @kernel
 def agent_of(task, world, node):
     """Return the number of the agent that a node is, or -1."""
-    for number in range(world.room.shape[0]):
+    for number in range(task.agents):
         if task.agent[number] == node:
             return number
     return -1
@@ -52,7 +52,7 @@ def agent_of(task, world, node):
 @kernel
 def holder(task, world, node):
     """Return the number of the first agent that a node is or that holds it, or -1."""
-    for number in range(world.room.shape[0]):
+    for number in range(task.agents):
         if task.agent[number] == node or world.hands[number, 0] == node or world.hands[number, 1] == node:
             return number
     return -1
@@ -76,7 +76,7 @@ def room_of(home, task, world, node):
         if room >= 0:
             return room
         if outer < 0:
-            for number in range(world.room.shape[0]):
+            for number in range(task.agents):
                 if has(world.rows[number, CONTENTS], node):
                     return np.int64(world.room[number])
             return np.int64(-1)

@@ -2,17 +2,21 @@
 
 A set has a word for each 64 nodes. `home`, `task` and `world` are records (see `record_types`); no node and no room are
 -1. Kernels are compiled at their first call and cached in the folder of the source, or in the user's cache
-folder if that is not writable; they release the interpreter's lock.
+folder if that is not writable. They release the interpreter's lock.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from hashlib import blake2b
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 
+from hearth.homes.plans.floor import REACH
 from hearth.schemas.optional_libraries import library
+from hearth.simulation.motion.navigation import BODY_RADIUS
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -22,7 +26,7 @@ _intrinsic = library("numba.extending").intrinsic
 _ir = library("llvmlite.ir")
 
 
-_OPTIONS = {"cache": True, "nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
+_OPTIONS = {"nogil": True, "error_model": "numpy", "_nrt": False, "no_cfunc_wrapper": True}
 """Results are those of Python's floats, so there is no fast math. Kernels allocate nothing, so they count no
 references, and have no wrappers for Python, so that they compile sooner."""
 
@@ -33,8 +37,19 @@ def kernel(function: F) -> F:
 
 
 def entry(function: F) -> F:
-    """Compile a function that Python calls, at the first call."""
-    return cast(F, _njit(**_OPTIONS)(function))
+    """Compile a function that Python calls, at the first call, and cache it with all that it calls.
+
+    The cache looks at the function's own file, and at the variables of its closure: `sources` must be one of them.
+    """
+    return cast(F, _njit(cache=True, **_OPTIONS)(function))
+
+
+def sources() -> int:
+    """Return a digest of all that compiled kernels depend on, for the key of their cache."""
+    here = Path(__file__).parent
+    files = [*sorted(here.glob("*.py")), here.parent / "action_table.py", here.parent / "mask_tracing.py"]
+    text = b"".join(file.read_bytes() for file in files) + repr((REACH, BODY_RADIUS)).encode()
+    return int.from_bytes(blake2b(text, digest_size=7).digest(), "little")
 
 
 def _lowest(typing: Any, word: Any) -> Any:

@@ -102,7 +102,7 @@ def _spread_lifted(home, world, found, frontier):
 def _spread_agents(task, world, found, frontier):
     """Add agents in a found room or on a found seat, and their things; return whether there were any."""
     grown = False
-    for number in range(world.room.shape[0]):
+    for number in range(task.agents):
         node = np.int64(task.agent[number])
         if not has(found, node):
             at = has(found, np.int64(world.room[number]))
@@ -161,7 +161,7 @@ def visible(home, task, world, agent, out, inner, scratch):
     put(out, np.int64(task.agent[agent]))
     for w in range(words):
         out[w] |= task.sets[ROOMS, w]
-    for other in range(world.room.shape[0]):
+    for other in range(task.agents):
         if has(out, np.int64(task.agent[other])):
             for hand in range(2):
                 if world.hands[other, hand] >= 0:

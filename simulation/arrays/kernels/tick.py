@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from hearth.simulation.arrays.action_table import (
@@ -36,7 +38,7 @@ from hearth.simulation.arrays.kernels.floor import cell_at, closed_doors, target
 from hearth.simulation.arrays.kernels.goals import count_goal
 from hearth.simulation.arrays.kernels.masks import allowed, fill_all, legal
 from hearth.simulation.arrays.kernels.observations import observe
-from hearth.simulation.arrays.kernels.set_words import ALL, EVERYTHING, entry, kernel
+from hearth.simulation.arrays.kernels.set_words import ALL, EVERYTHING, entry, kernel, sources
 from hearth.simulation.arrays.kernels.sight import hidden, visible
 
 STEP, LOOK = range(2)
@@ -109,7 +111,7 @@ def _act(home, task, world, agent, row, node, everything, fields, missing, near,
 def tick(home, task, world, numbers, table, fields, missing, scratch, registers, cells):
     """Run one tick by the rule of `engine.tick`, or go on with one that waited; return its status."""
     rows, program, read, first_plane, made_bed = table
-    agents, nodes = world.room.shape[0], 64 * world.lifted.shape[0]
+    agents, nodes = task.agents, 64 * world.lifted.shape[0]
     everything, near = scratch[2], scratch[3]
     for w in range(everything.shape[0]):
         everything[w] = ALL
@@ -165,46 +167,57 @@ def look(home, task, world, agent, table, partial, keep, planes, scratch, regist
     legal(world, agent, keep, rows, program, registers, planes)
 
 
-@entry
-def advance(job, level, homes, tasks, worlds, which, numbers, table, fields, rules, shown, results, missing, scratch):
-    """Run a job for some worlds: `STEP` them, or `LOOK` at them as they are.
+def _compiled(sources: int) -> Any:
+    """Return `advance`; the digest of the sources is part of the key under which it is cached."""
 
-    Args:
-        job, level: see above.
-        homes, tasks, worlds: records.
-        which: numbers of the worlds.
-        numbers: actions by world and agent.
-        table: rows, program, read sets and first plane of the actions, and the rule `made_bed`.
-        fields: rows of distance fields by home, key and closed doors; distances; following cells.
-        rules: ticks of an episode, rewards of success, a tick and a predicate, whether sight is partial.
-        shown: arrays that observations are written into.
-        results: status, rewards, whether the goal is reached, whether the time is over.
-        missing: home, key and doors of a missing field, by world.
-        scratch: words for intermediate sets and registers, and four cells; of one thread.
-    """
-    keep, planes = shown[0], shown[1]
-    status, reward, reached, over = results
-    limit, success, per_tick, per_predicate, partial = rules
-    sets, registers, cells = scratch
-    for k in range(which.shape[0]):
-        i = which[k]
-        world = worlds[i]
-        task = tasks[world.task]
-        home = homes[task.home]
-        if job == STEP:
-            status[i] = tick(home, task, world, numbers[i], table, fields, missing[i], sets, registers, cells)
-            if status[i] & MISSING:
-                continue
-            if level >= REWARDS:
-                met, before = world.met, world.total
-                now, total = count_goal(home, task, world)
-                world.met, world.total = now, total
-                reward[i] = per_tick + (success if now and not met else 0.0) + per_predicate * (total - before)
-                reached[i] = now
-                over[i] = world.tick >= limit and not now
-        if level >= SIGHT:
-            for agent in range(world.room.shape[0]):
-                seen, legal_now = keep[i, agent], planes[i, agent]
-                look(home, task, world, agent, table, partial, seen, legal_now, sets, registers, cells)
-                if level >= ARRAYS:
-                    observe(home, task, world, agent, seen, legal_now, registers, shown, i, limit)
+    @entry
+    def advance(
+        job, level, homes, tasks, worlds, which, numbers, table, fields, rules, shown, results, missing, scratch
+    ):
+        """Run a job for some worlds: `STEP` them, or `LOOK` at them as they are.
+
+        Args:
+            job, level: see above.
+            homes, tasks, worlds: records.
+            which: numbers of the worlds.
+            numbers: actions by world and agent.
+            table: rows, program, read sets and first plane of the actions, and the rule `made_bed`.
+            fields: rows of distance fields by home, key and closed doors; distances; following cells.
+            rules: ticks of an episode, rewards of success, a tick and a predicate, whether sight is partial.
+            shown: arrays that observations are written into.
+            results: status, rewards, whether the goal is reached, whether the time is over.
+            missing: home, key and doors of a missing field, by world.
+            scratch: words for intermediate sets and registers, and four cells; of one thread.
+        """
+        keep, planes = shown[0], shown[1]
+        status, reward, reached, over = results
+        limit, success, per_tick, per_predicate, partial = rules
+        sets, registers, cells = scratch
+        for k in range(which.shape[0]):
+            i = which[k]
+            world = worlds[i]
+            task = tasks[world.task]
+            home = homes[task.home]
+            if job == STEP:
+                status[i] = tick(home, task, world, numbers[i], table, fields, missing[i], sets, registers, cells)
+                if status[i] & MISSING:
+                    continue
+                if level >= REWARDS:
+                    met, before = world.met, world.total
+                    now, total = count_goal(home, task, world)
+                    world.met, world.total = now, total
+                    reward[i] = per_tick + (success if now and not met else 0.0) + per_predicate * (total - before)
+                    reached[i] = now
+                    over[i] = world.tick >= limit and not now
+            if level >= SIGHT:
+                for agent in range(task.agents):
+                    seen, legal_now = keep[i, agent], planes[i, agent]
+                    look(home, task, world, agent, table, partial, seen, legal_now, sets, registers, cells)
+                    if level >= ARRAYS:
+                        observe(home, task, world, agent, seen, legal_now, registers, shown, i, limit)
+        return sources
+
+    return advance
+
+
+advance = _compiled(sources())
