@@ -111,6 +111,7 @@ def world_type(b: Bucket) -> np.dtype[np.void]:
             ("states", "u8", (8, w)),  # of things; the agents' own are `posture`
             ("lifted", "u8", (w,)),  # things whose edges at the start no longer count
             ("carried", "u8", (w,)),  # things whose FACING edges do not count either
+            ("fresh", "u8"),  # added things that are CLOSE to those of `task.added_close`
             ("rows", "u8", (agents, 5, w)),  # the agents' own edges: `CLOSE` ... `CONTENTS` of `kernels.set_words`
             ("pose", "f8", (agents, 3)), ("stride", "f8", (agents,)),
             ("seed", "u8"), ("task", "i4"), ("tick", "i4"), ("episode", "i4"), ("total", "i4"), ("waiting", "i4"),
@@ -129,7 +130,7 @@ def task_type(b: Bucket) -> np.dtype[np.void]:
     return np.dtype(
         [
             ("home", "i4"), ("agents", "i8"), ("literals", "i4"), ("agent", "i2", (MOST_AGENTS,)),
-            ("added_limits", "i2", (ADDED, 2)), ("sets", "u8", (MOST_SETS, w)),
+            ("added_limits", "i2", (ADDED, 2)), ("added_close", "u8", (ADDED, w)), ("sets", "u8", (MOST_SETS, w)),
             ("kind", "i2", (MOST_LITERALS,)), ("wanted", "i2", (MOST_LITERALS,)),
             ("rewarded", "i2", (MOST_LITERALS,)), ("negated", "u1", (MOST_LITERALS,)),
             ("by_target", "u1", (MOST_LITERALS,)),

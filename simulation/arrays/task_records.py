@@ -22,7 +22,7 @@ from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest, mask_of
 from hearth.simulation.world.home import Home
-from hearth.simulation.world.states import SITTING
+from hearth.simulation.world.states import LYING, SITTING
 from hearth.simulation.world.world import World
 
 RELATIONS = {"ON": IS_ON, "INSIDE": IS_INSIDE, HOLDS: IS_HELD}
@@ -92,7 +92,7 @@ def task_record(begin: Begin, number: int, shape: HomeShape, bucket: Bucket, set
         record["added_limits"][i - first] = home.limit(i), home.limit(i, lying=True)
     for place, name in enumerate(sets):
         record["sets"][place] = words(_set(name, home, shape), first, bucket)
-    _start(record["start"], begin, shape, bucket)
+    _start(record, begin, shape, bucket)
     _goal(record, begin, first, bucket)
     return record
 
@@ -128,36 +128,58 @@ def _start(record: Any, begin: Begin, shape: HomeShape, bucket: Bucket) -> None:
     """Fill the record of the world in which a task starts."""
     world, first = begin.world, len(shape.home)
     home, moved = world.home, begin.world.moved
-    if not moved.on == moved.inside == moved.close or moved.facing:
+    start = record["start"]
+    if not moved.on == moved.inside == moved.close:
         raise _unfit(begin, "its start has single edges that came or went")
     lifted = moved.on | home.everything & ~home.characters & -1 << first
     for state in range(SITTING):
-        record["states"][state] = words(world.states[state], first, bucket)
-    record["lifted"], record["place"] = words(lifted, first, bucket), -1
+        start["states"][state] = words(world.states[state], first, bucket)
+    start["lifted"], start["place"] = words(lifted, first, bucket), -1
+    start["carried"] = words(moved.facing, first, bucket)
     slots = {i: number for number, i in enumerate(shape.movable)}
+    fresh = _fresh(record, begin, first, bucket)
     for i in indices(lifted):
         slot = slots[i] if i in slots else bucket.movable + i - first if i >= first else None
         if slot is None:
             raise _unfit(begin, f"its start has moved {home.classes[i]} ({home.ids[i]}), which nobody can grab")
-        record["place"][slot] = _place(begin, shape, bucket, i)
+        start["place"][slot] = _place(begin, shape, bucket, i, fresh)
     _unmoved(begin, lifted)
     for number, agent in enumerate(world.agents):
-        if agent.pose is None or world.states[SITTING] & agent.bit or any((*agent[2:5], *agent[6:11])):
-            raise _unfit(begin, f"its agent {number} does not stand in a room with empty hands and no edges")
-        record["pose"][number], record["stride"][number] = agent.pose, agent.stride
-        record["room"][number] = lowest(agent.inside)
-    record["hands"] = -1
+        if agent.pose is None or agent.faced or agent.inside & ~home.rooms or agent.held & ~lifted:
+            raise _unfit(begin, f"its agent {number} is not in a room, or holds a thing that it did not grab")
+        start["pose"][number], start["stride"][number] = agent.pose, agent.stride
+        start["room"][number] = lowest(agent.inside)
+        for hand, thing in enumerate((agent.right, agent.left)):
+            held = lowest(thing)
+            start["hands"][number, hand] = -1 if held < 0 else index_in_record(home, shape, bucket, held)
+        for row, edges in enumerate((agent.close, agent.facing, agent.on, agent.worn, agent.contents)):
+            start["rows"][number, row] = words(edges, first, bucket)
+        resting = [state for state in (SITTING, LYING) if world.states[state] & agent.bit]
+        start["posture"][number] = resting[0] if resting else 0
 
 
-def _place(begin: Begin, shape: HomeShape, bucket: Bucket, i: int) -> tuple[int, ...]:
+def _fresh(record: Any, begin: Begin, first: int, bucket: Bucket) -> int:
+    """Fill the CLOSE edges of added things, where some of them have several; return those that have not moved."""
+    home = begin.world.home
+    added = home.everything & ~home.characters & -1 << first & ~begin.world.moved.on
+    if all(home.close[i].bit_count() < 2 for i in indices(added)):
+        return 0
+    for i in indices(added):
+        record["added_close"][i - first] = words(home.close[i] & ~home.characters, first, bucket)
+    record["start"]["fresh"] = np.uint64(added >> first)
+    return added
+
+
+def _place(begin: Begin, shape: HomeShape, bucket: Bucket, i: int, fresh: int) -> tuple[int, ...]:
     """Return what a moved or added thing is ON, in, its room, and what it is CLOSE to."""
     world = begin.world
     inside = edge_rows.inside(world, i)
     rows = {
         ON: edge_rows.on(world, i), INSIDE: inside & ~world.home.rooms, ROOM: inside & world.home.rooms,
-        NEXT_TO: edge_rows.close(world, i),
+        NEXT_TO: 0 if fresh >> i & 1 else edge_rows.close(world, i) & ~fresh,
     }  # fmt: skip
-    if any(row.bit_count() > 1 for row in rows.values()) or edge_rows.facing(world, i) | edge_rows.faced(world, i):
+    turned = i >= len(shape.home) and world.home.facing[i] | world.home.faced[i]
+    if any(row.bit_count() > 1 for row in rows.values()) or turned:
         raise _unfit(begin, f"its {world.home.classes[i]} ({world.home.ids[i]}) is at several places")
     return tuple(
         index_in_record(world.home, shape, bucket, lowest(rows[k])) if rows[k] else -1

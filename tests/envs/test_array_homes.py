@@ -167,7 +167,7 @@ def test_importing_hearth_imports_no_numba():
 
 
 def test_household_tasks_are_played_where_they_are_in_scope():
-    some = [task for task in household_tasks("train", 40) if not task.goal.parts][:3]
+    some = list(household_tasks("train", 3))
     homes = hearth.ArrayHomes(some, worlds=3)
     observation, _ = homes.reset(seed=1)
     assert (observation["mask"][:, 0] == 1).all()

@@ -128,6 +128,8 @@ def _world(pair: Pair) -> list[str]:
     if lifted != moved.on | added or moved.facing != pair.mask(record["carried"]) | start.moved.facing:
         wrong.append("lifted")
     slots = pair.batch.homes["slot"][pair.batch.tasks["home"][record["task"]]]
+    first = len(pair.batch.shapes[pair.batch.tasks["home"][record["task"]]].home)
+    gone = lifted & ~(int(record["fresh"]) << first)
     nexts: dict[int, int] = {}
     for i in indices(lifted):
         on, inside, room, near = record["place"][slots[pair.batch.index_of(pair.number, world.home.ids[i])]]
@@ -141,7 +143,7 @@ def _world(pair: Pair) -> list[str]:
             nexts[j] = nexts.get(j, 0) | 1 << i
     some = range(len(world.home)) if len(pair.env.ticks) % WHOLE == 0 else indices(lifted)
     for i in some:
-        own = 0 if lifted >> i & 1 else world.home.close[i] & ~lifted
+        own = 0 if gone >> i & 1 else world.home.close[i] & ~gone
         if edge_rows.close(world, i) != own | nexts.get(i, 0):
             wrong.append("close")
     return wrong

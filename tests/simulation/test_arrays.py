@@ -13,6 +13,7 @@ from oracles.array_engine import chosen, paired, step
 
 from hearth.challenges.array_homes import begins_of
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.household import household_tasks
 from hearth.challenges.published_tasks import tasks
 from hearth.envs.rewards import Rewards
 from hearth.envs.session import opening
@@ -67,7 +68,18 @@ def generated():
     return batch_of(begins, DEFAULT, partial=True, limit=30)
 
 
-CASES = {"wah": lambda: of_challenge("wah", 1, 6), "owah": lambda: of_challenge("owah", 2, 5), "generated": generated}
+def household():
+    which = challenge("household")
+    some = [task for task in household_tasks("train", 5) if not task.goal.parts]
+    return batch_of(begins_of(some, which, default(), 1), which.rules, partial=True, limit=30)
+
+
+CASES = {
+    "wah": lambda: of_challenge("wah", 1, 6),
+    "owah": lambda: of_challenge("owah", 2, 5),
+    "household": household,
+    "generated": generated,
+}
 
 
 def differences(batch, ticks, seed=1, wild=0.07):
@@ -169,12 +181,12 @@ def test_numbers_out_of_range_change_nothing():
     assert np.array_equal(before, batch.worlds)
 
 
-def test_starts_in_the_middle_of_a_run_are_refused():
+def test_starts_with_hands_that_grabbed_nothing_are_refused():
     world, goal = opening("maple", "CLOSED(fridge)", 1)(0)
     agent = world.agents[0]
     milk = next(indices(world.home.instances("milk")))
     holding = world.with_agent(0, agent._replace(right=1 << milk))
-    with pytest.raises(HearthError, match="does not stand in a room with empty hands"):
+    with pytest.raises(HearthError, match="holds a thing that it did not grab"):
         Batch([Begin("one", holding, goal)], 1, PLAYED)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from hearth.simulation.arrays.action_table import PUT_ON
 from hearth.simulation.arrays.kernels.floor import ahead, destination, stepped, target_of, turned_to
-from hearth.simulation.arrays.kernels.nearness import add_arrival, near_point
+from hearth.simulation.arrays.kernels.nearness import add_arrival, fresh_row, near_point
 from hearth.simulation.arrays.kernels.places import agent_of, container, spot, support
 from hearth.simulation.arrays.kernels.set_words import (
     CLOSE,
@@ -97,10 +97,28 @@ def origin_of(home, task, world, node):
                 some |= bit(other)
         if beside >= 0 and beside >> 6 == w:
             some |= bit(beside)
+        some |= _fresh_beside(task, world, node, w)
         some &= task.sets[FURNITURE, w]
         if some:
             return w * 64 + lowest(some)
     return np.int64(-1)
+
+
+@kernel
+def _fresh_beside(task, world, node, w):
+    """Return a word of the things to which a node is CLOSE since the start because one of both was added."""
+    base, found = 64 * (world.lifted.shape[0] - 1), NONE
+    own = np.uint64(0) if node < base else world.fresh & bit(node)
+    if own:
+        found |= fresh_row(task, world, node - base, w)
+    if w == world.lifted.shape[0] - 1 and (own or (node < base and not has(world.lifted, node))):
+        rest = world.fresh
+        while rest:
+            k = lowest(rest)
+            rest &= rest - np.uint64(1)
+            if has(task.added_close[k], node):
+                found |= bit(k)
+    return found
 
 
 @kernel
@@ -112,6 +130,8 @@ def lift(home, task, world, agent, node):
     place[ON] = place[INSIDE] = place[NEXT_TO] = -1
     place[ROOM] = world.room[agent]
     put(world.lifted, node)
+    if node >> 6 == world.lifted.shape[0] - 1:
+        world.fresh &= ~bit(node)
     for other in range(task.agents):
         if other != agent:
             take(world.rows[other, CLOSE], node)

@@ -65,6 +65,7 @@ def close_to(home, task, world, agent, keep, first, last, out):
                 put(out, node)
             if beside >= 0 and first <= beside >> 6 < last and _near(mine, keep, node):
                 put(out, beside)
+    _add_fresh(task, world, mine, keep, first, last, out)
     for other in range(task.agents):
         node = np.int64(task.agent[other])
         if not has(keep, node):
@@ -84,6 +85,31 @@ def close_to(home, task, world, agent, keep, first, last, out):
 def _near(mine, keep, node):
     """Return whether a node is in an agent's row and shown; agents' edges to others are no hops for things."""
     return node >= 0 and (mine[node >> 6] & keep[node >> 6] & bit(node)) != 0
+
+
+@kernel
+def fresh_row(task, world, k, w):
+    """Return a word of the things to which an added thing is CLOSE, while it is where it was at the start."""
+    last = world.lifted.shape[0] - 1
+    return task.added_close[k, w] & (world.fresh if w == last else ~world.lifted[w])
+
+
+@kernel
+def _add_fresh(task, world, mine, keep, first, last, out):
+    """Add the hops over added things that are where they were at the start."""
+    base = 64 * (world.lifted.shape[0] - 1)
+    rest = world.fresh
+    while rest:
+        k = lowest(rest)
+        rest &= rest - np.uint64(1)
+        hop, meets = _near(mine, keep, base + k), False
+        for w in range(mine.shape[0]):
+            row = fresh_row(task, world, k, w)
+            meets = meets or (mine[w] & keep[w] & row) != 0
+            if hop and first <= w < last:
+                out[w] |= row
+        if meets and first <= (base + k) >> 6 < last:
+            put(out, base + k)
 
 
 @kernel
