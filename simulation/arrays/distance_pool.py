@@ -17,6 +17,10 @@ FIRST_FIELDS = 256
 """Fields for which there is room at first."""
 
 
+ROUNDS = 12
+"""Rounds of following a way, each twice as far: 4,096 cells."""
+
+
 class DistancePool:
     """The fields of some homes.
 
@@ -33,7 +37,9 @@ class DistancePool:
         self.following = np.zeros((FIRST_FIELDS, bucket.cells), np.int16)
         self.following[0] = -1
         self.computed = 1
-        self._passes: dict[tuple[int, int], np.ndarray] = {}
+        self._passes: dict[int, np.ndarray] = {}
+        self._parts: dict[tuple[int, int], np.ndarray] = {}
+        self._doors: dict[int, np.ndarray] = {}
 
     @property
     def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -43,17 +49,36 @@ class DistancePool:
     def fill(self, missing: np.ndarray) -> None:
         """Compute the fields that kernels asked for: rows of (home, key, closed doors)."""
         for home, key, closed in {tuple(each) for each in missing.tolist()}:
-            if self.rows[home, key, closed]:
-                continue
-            if not self.rows[home, key, 0]:
-                self.rows[home, key, 0] = self._add(home, key, ())
-            if not closed:
-                continue
-            shut = self._shut(home, closed)
-            if self._turned(home, key, closed, shut):
-                self.rows[home, key, closed] = self._add(home, key, shut)
-            else:
-                self.rows[home, key, closed] = self.rows[home, key, 0]
+            self._fill(home, key, closed)
+
+    def _fill(self, home: int, key: int, closed: int) -> int:
+        """Return the number of a field, computed where no other serves as well."""
+        row = int(self.rows[home, key, closed])
+        if not row:
+            at_end = self._at_end(home, key) & closed
+            row = 0 if at_end == closed else self._fill(home, key, at_end)
+            if not row or self._turned(home, key, row, closed):
+                row = self._add(home, key, self._shut(home, closed))
+            self.rows[home, key, closed] = row
+        return row
+
+    def _at_end(self, home: int, key: int) -> int:
+        """Return the doors, as bits, in whose ways a target has cells: closed, they change where its ways end."""
+        doors = self._in_ways(home)
+        found = 0
+        for end in self._ends(home, key):
+            found |= int(doors[end])
+        return found
+
+    def _in_ways(self, home: int) -> np.ndarray:
+        """Return by cell the doors, as bits, in whose way it is."""
+        if home not in self._doors:
+            shape = self._shapes[home]
+            found = np.zeros(len(shape.ground.ways.cells), np.int32)
+            for k, door in enumerate(shape.doors):
+                found[list(shape.ground.shut(1 << door))] |= 1 << k
+            self._doors[home] = found
+        return self._doors[home]
 
     def _ends(self, home: int, key: int) -> tuple[int, ...]:
         targets = self._shapes[home].targets
@@ -76,29 +101,28 @@ class DistancePool:
         self.computed += 1
         return self.computed - 1
 
-    def _turned(self, home: int, key: int, closed: int, shut: tuple[int, ...]) -> bool:
-        """Return whether closed doors turn the way from some cell from which the target can still be reached."""
-        shape = self._shapes[home]
-        doors = sum(1 << door for k, door in enumerate(shape.doors) if closed >> k & 1)
-        region = np.array(shape.ground.regions(doors))
-        ends = [end for end in self._ends(home, key) if end not in shut]
-        if len(ends) < len(self._ends(home, key)):
-            return True
-        comes = np.isin(region, region[ends])
-        return bool((self._passing(home, key)[comes] & closed).any())
+    def _turned(self, home: int, key: int, row: int, closed: int) -> bool:
+        """Return whether closed doors turn the way of a field from some cell that they do not cut off."""
+        region = self._regions(home, closed)
+        ends = region[list(self._ends(home, key))]
+        comes = np.isin(region, ends[ends > 0])
+        return bool((self._passing(home, row)[comes] & closed).any())
 
-    def _passing(self, home: int, key: int) -> np.ndarray:
-        """Return by cell the doors, as bits, in whose ways the open way from it lies."""
-        if (home, key) not in self._passes:
-            shape, row = self._shapes[home], self.rows[home, key, 0]
-            cells = len(shape.ground.ways.cells)
-            found = np.zeros(cells, np.int32)
-            for k, door in enumerate(shape.doors):
-                found[list(shape.ground.shut(1 << door))] |= 1 << k
-            distance, following = self.distance[row, :cells], self.following[row, :cells].astype(np.int64)
-            ahead = np.where((following >= 0) & np.isfinite(distance), following, np.arange(cells))
-            for _ in range(16):  # each round doubles the part of the way that is looked at
+    def _regions(self, home: int, closed: int) -> np.ndarray:
+        if (home, closed) not in self._parts:
+            shape = self._shapes[home]
+            doors = sum(1 << door for k, door in enumerate(shape.doors) if closed >> k & 1)
+            self._parts[home, closed] = np.array(shape.ground.regions(doors), np.int16)
+        return self._parts[home, closed]
+
+    def _passing(self, home: int, row: int) -> np.ndarray:
+        """Return by cell the doors, as bits, in whose ways a field leads from it."""
+        if row not in self._passes:
+            found = self._in_ways(home).copy()
+            distance, following = self.distance[row, : len(found)], self.following[row, : len(found)].astype(np.int64)
+            ahead = np.where((following >= 0) & np.isfinite(distance), following, np.arange(len(found)))
+            for _ in range(ROUNDS):
                 found |= found[ahead]
                 ahead = ahead[ahead]
-            self._passes[home, key] = found
-        return self._passes[home, key]
+            self._passes[row] = found.astype(np.uint8)
+        return self._passes[row]

@@ -65,7 +65,20 @@ UPRIGHT = 0
 
 
 @kernel
-def seat_taken(home, task, world, keep, node, made_bed):
+def _something_put_on_seats(home, task, world):
+    """Return whether any lifted thing is on something to sit or lie on."""
+    for w in range(world.lifted.shape[0]):
+        rest = world.lifted[w]
+        while rest:
+            node = w * 64 + lowest(rest)
+            rest &= rest - np.uint64(1)
+            if has(task.sets[RESTS], np.int64(world.place[home.slot[node], ON])):
+                return True
+    return False
+
+
+@kernel
+def seat_taken(home, task, world, keep, node, made_bed, lifted_too):
     """Return how many things and agents take room on a seat or bed: `edge_rows.taking_room`."""
     found = 0
     plain = not (made_bed and has(task.sets[LIEABLE], node))
@@ -73,7 +86,7 @@ def seat_taken(home, task, world, keep, node, made_bed):
         for w in range(world.lifted.shape[0]):
             on_it = home.bears[node, w] & ~world.lifted[w]
             found += count(on_it if plain else on_it & ~task.sets[BEDDING, w])
-    for w in range(world.lifted.shape[0]):
+    for w in range(world.lifted.shape[0] if lifted_too else 0):
         rest = world.lifted[w] if plain else world.lifted[w] & ~task.sets[BEDDING, w]
         while rest:
             other = w * 64 + lowest(rest)
@@ -169,6 +182,7 @@ def fill_all(home, task, world, agent, keep, inner, needs, read, made_bed, cells
                 if not has(keep, container(home, world, node)):
                     found &= ~bit(node)
             registers[_HIDDEN, w] = found
+    some = _something_put_on_seats(home, task, world)
     for lying in range(2):
         if needs >> (_ROOM_TO_SIT + lying) & 1:
             for w in range(words):
@@ -176,7 +190,7 @@ def fill_all(home, task, world, agent, keep, inner, needs, read, made_bed, cells
                 while rest:
                     node = w * 64 + lowest(rest)
                     rest &= rest - np.uint64(1)
-                    if seat_taken(home, task, world, keep, node, made_bed) < _limit(home, task, node, lying):
+                    if seat_taken(home, task, world, keep, node, made_bed, some) < _limit(home, task, node, lying):
                         found |= bit(node)
                 registers[_ROOM_TO_SIT + lying, w] = found
     if needs >> _AHEAD & 1 or needs >> _WALKED_TO & 1:
@@ -201,7 +215,7 @@ def fill_one(home, task, world, agent, keep, node, needs, read, made_bed, cells,
         _flag(registers[_HIDDEN], first, last, hidden_one(home, task, world, node))
     for lying in range(2):
         if needs >> (_ROOM_TO_SIT + lying) & 1:
-            taken = seat_taken(home, task, world, keep, node, made_bed)
+            taken = seat_taken(home, task, world, keep, node, made_bed, True)
             _flag(registers[_ROOM_TO_SIT + lying], first, last, taken < _limit(home, task, node, lying))
     if needs >> _AHEAD & 1 or needs >> _WALKED_TO & 1 or needs >> _WALKABLE & 1:
         doors = closed_doors(home, task, world, keep)

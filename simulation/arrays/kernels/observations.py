@@ -28,6 +28,10 @@ _CLOSE = DYNAMIC.index("close")
 @kernel
 def _bytes_of(word, out, first):
     """Write the bits of a word as bytes, eight to a word."""
+    if word == NONE:
+        for k in range(8):
+            out[first + k] = NONE
+        return
     for k in range(8):
         out[first + k] = SPREAD[(word >> np.uint64(8 * k)) & np.uint64(255)]
 
@@ -64,6 +68,10 @@ def _nodes(task, world, agent, keep, close, out):
     """Write a byte a node: seen, close, OPEN, CLOSED, ON, in one's hands, a subject of the goal, a target of it."""
     for w in range(keep.shape[0]):
         seen, held, subjects, targets = keep[w], NONE, NONE, NONE
+        if seen == NONE:
+            for k in range(8):
+                out[w * 8 + k] = NONE
+            continue
         for k in range(task.literals):
             subjects |= task.subjects[k, w]
             targets |= task.targets[k, w]

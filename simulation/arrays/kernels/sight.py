@@ -79,23 +79,21 @@ def _spread(home, task, world, found, frontier):
 
 @kernel
 def _spread_lifted(home, world, found, frontier):
-    """Add lifted things that are on or in a found one; return whether there were any."""
-    grown = False
+    """Add lifted things that are on or in a found one; return whether others may be on or in these."""
+    grown, nested = False, False
     for w in range(found.shape[0]):
         rest = world.lifted[w] & ~found[w]
         while rest:
             node = w * 64 + lowest(rest)
             rest &= rest - np.uint64(1)
             place = world.place[home.slot[node]]
-            if (
-                has(found, np.int64(place[ON]))
-                or has(found, np.int64(place[INSIDE]))
-                or has(found, np.int64(place[ROOM]))
-            ):
+            on, inside = np.int64(place[ON]), np.int64(place[INSIDE])
+            nested = nested or has(world.lifted, on) or has(world.lifted, inside)
+            if has(found, on) or has(found, inside) or has(found, np.int64(place[ROOM])):
                 put(found, node)
                 put(frontier, node)
                 grown = True
-    return grown
+    return grown and nested
 
 
 @kernel

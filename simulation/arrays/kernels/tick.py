@@ -16,6 +16,7 @@ from hearth.simulation.arrays.action_table import (
     HAND,
     LIFT,
     MOVING,
+    NEEDS,
     PUT_INSIDE,
     PUT_ON,
     RISE,
@@ -162,7 +163,9 @@ def look(home, task, world, agent, table, partial, keep, planes, scratch, regist
         hidden(home, task, world, scratch[2], inner)
         for w in range(keep.shape[0]):
             keep[w] = task.sets[EVERYTHING, w]
-    needs = np.int64(0x7FFFFFFF)
+    needs = np.int64(0)
+    for k in range(rows.shape[0]):
+        needs |= rows[k, NEEDS]
     fill_all(home, task, world, agent, keep, inner, needs, read, made_bed, cells, registers)
     legal(world, agent, keep, rows, program, registers, planes)
 
