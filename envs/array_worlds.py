@@ -212,6 +212,10 @@ class ArrayWorlds(VectorEnv[Arrays, NDArray[Any], NDArray[Any]]):
         arrays = self.worlds.arrays(0)
         return {name: array.copy() for name, array in arrays.items()} if self.copy else arrays
 
+    def random_actions(self, seed: int) -> NDArray[np.int64]:
+        """Return a random legal action for each world, each equally probable; equal for equal seeds and worlds."""
+        return self.worlds.batch.random_numbers(seed)[:, 0]
+
     def tensors(self) -> dict[str, Any]:
         """Return the observations as tensors of torch over the same memory: each step changes their content."""
         torch = library("torch")

@@ -17,6 +17,7 @@ from hearth.simulation.arrays.action_table import FIRST_NODE_NUMBER, ActionTable
 from hearth.simulation.arrays.distance_pool import DistancePool
 from hearth.simulation.arrays.home_records import HomeShape, bucket_of, home_record
 from hearth.simulation.arrays.kernels.observations import AGENT_COLUMNS
+from hearth.simulation.arrays.kernels.sampling import random_legal
 from hearth.simulation.arrays.kernels.tick import (
     ARRAYS,
     LOOK,
@@ -205,6 +206,12 @@ class Batch:
             self._run(STEP, level, which)
             which = which[self.status[which] & MISSING != 0]
             self.pool.fill(self._missing[which])
+
+    def random_numbers(self, seed: int) -> NDArray[np.int64]:
+        """Return a random legal number for each agent of each world, from a seed and the number of the world."""
+        found = np.zeros((len(self), self.agents), np.int64)
+        random_legal(self.shown.planes, found, seed % 2**32)
+        return found
 
     def _check(self, numbers: NDArray[Any]) -> None:
         """Refuse numbers that are out of range.

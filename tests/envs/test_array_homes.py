@@ -96,6 +96,13 @@ def test_rewards_and_ends_are_those_of_the_environment_of_one_world(homes):
         assert rewards.tolist() == [expected] * 2 and terminated.tolist() == [env.session.succeeded] * 2
 
 
+def test_random_actions_are_legal_and_reach_all(homes):
+    observation, _ = homes.reset(seed=3)
+    drawn = np.array([homes.random_actions(seed) for seed in range(300)])
+    assert (observation["mask"][np.arange(16)[None], drawn] == 1).all()
+    assert len(np.unique(drawn[:, 0])) > 0.7 * observation["mask"][0].sum() and (drawn[0] != drawn[1]).any()
+
+
 def test_tensors_share_the_memory(homes):
     pytest.importorskip("torch")
     observation, _ = homes.reset(seed=3)
