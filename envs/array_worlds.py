@@ -151,7 +151,7 @@ class ArrayWorlds(VectorEnv[Arrays, NDArray[Any], NDArray[Any]]):
             message = f"the tasks have {worlds.batch.agents} agents"
             raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="ParallelArrayWorlds, or `agents=1`")
         self.worlds, self.copy = worlds, copy
-        self.metadata = {**type(self).metadata, "autoreset_mode": AutoresetMode.SAME_STEP}
+        self.metadata = {**type(self).metadata, "autoreset_mode": AutoresetMode.SAME_STEP}  # type: ignore[misc]
         self.num_envs = len(worlds.batch)
         self.single_observation_space = worlds.space()
         self.single_action_space = Discrete(worlds.batch.size)

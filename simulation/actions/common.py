@@ -6,6 +6,7 @@ A check is made for one object by the engine and for all nodes at once by `legal
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -69,7 +70,8 @@ class Check(NamedTuple):
     mask: Callable[[Situation, str], int]
 
 
-class Becomes(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Becomes:
     """The effect that the object enters a state, as a value that other engines can read.
 
     Attributes:

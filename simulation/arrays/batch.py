@@ -253,7 +253,8 @@ class Batch:
 
     def home_of(self, world: int) -> Home:
         """Return the home of a world's task, with the nodes that the task adds."""
-        return self.begins[self.worlds["task"][world]].world.home
+        begin: Begin = self.begins[self.worlds["task"][world]]
+        return begin.world.home
 
     def classes(self, task: int) -> list[str]:
         """Return the class of each node of a task by index in records, "" where there is none."""

@@ -43,7 +43,7 @@ class DistancePool:
 
     @property
     def arrays(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What kernels read."""
+        """Return the arrays that kernels read."""
         return self.rows, self.distance, self.following
 
     def fill(self, missing: np.ndarray) -> None:

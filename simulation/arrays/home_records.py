@@ -185,8 +185,8 @@ def _floor(record: Any, shape: HomeShape, bucket: Bucket) -> None:
     cells = record["cells"] = len(ways.cells)
     record["origin"] = (*ways.floor.origin, ways.floor.cell)
     record["grid"], record["cell_room"] = -1, -1
-    inner = ways.number.shape
-    record["grid"][1 : 1 + inner[0], 1 : 1 + inner[1]] = ways.number
+    rows, columns = map(int, ways.number.shape)
+    record["grid"][1 : 1 + rows, 1 : 1 + columns] = ways.number
     record["middle"][:cells], record["cell_room"][:cells] = ways.points, ground.rooms
     record["main"][:cells] = ways.main
     for cell in range(cells):

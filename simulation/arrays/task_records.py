@@ -171,7 +171,7 @@ def _fresh(record: Any, begin: Begin, first: int, bucket: Bucket) -> int:
 
 
 def _place(begin: Begin, shape: HomeShape, bucket: Bucket, i: int, fresh: int) -> tuple[int, ...]:
-    """Return what a moved or added thing is ON, in, its room, and what it is CLOSE to."""
+    """Return the places of a moved or added thing: ON, in, its room, CLOSE to."""
     world = begin.world
     inside = edge_rows.inside(world, i)
     rows = {

@@ -3,8 +3,6 @@
 Each follows its record in `simulation.actions`; the tests of exactness hold the two together.
 """
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import math
@@ -187,7 +185,7 @@ def settle(home, task, world, agent, node, posture):
 
 @kernel
 def rise(home, task, world, agent):
-    """Stand up beside the seat, which is free then: `posture.stand_up`, `positions.risen`."""
+    """Stand up next to the seat, which is free then: `posture.stand_up`, `positions.risen`."""
     seat = np.int64(-1)
     for w in range(world.lifted.shape[0]):
         if seat < 0 and world.rows[agent, SEATS, w]:

@@ -4,8 +4,6 @@ While doors are closed a way is the open one where that is free, which `distance
 target, and to a set of closed doors only where they turn some way.
 """
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import math

@@ -1,7 +1,5 @@
 """Counts of a goal's literals, as `simulation.goals` counts them."""
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import numpy as np

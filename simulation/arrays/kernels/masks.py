@@ -4,8 +4,6 @@
 Both readings of a set stand together, as in `actions.common`.
 """
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import numpy as np

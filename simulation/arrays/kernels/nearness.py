@@ -4,8 +4,6 @@ They read as `observation.reach` and `motion.positions` do. CLOSE is no distance
 the agent walks.
 """
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import math

@@ -1,7 +1,5 @@
 """The arrays that an agent observes: legal numbers, nodes, places of things, and agents. Nothing unseen is in them."""
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import math

@@ -1,9 +1,7 @@
-"""Where things are: what a node is on and in, its room, and the place at which it stands on the floor.
+"""Places of things: the supports, containers and rooms of nodes, and their points of the floor.
 
 They read as `world.edge_rows` and `motion.positions` do: an edge of the home counts while neither end is lifted.
 """
-
-# mypy: disable-error-code="no-untyped-def"
 
 from __future__ import annotations
 

@@ -1,7 +1,5 @@
 """Random legal numbers, each equally probable: for random play, tests and benchmarks."""
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 from typing import Any

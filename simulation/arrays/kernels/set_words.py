@@ -89,24 +89,24 @@ EVERYTHING, ROOMS, DOORS, FURNITURE, BEDDING, LIEABLE, SURFACES, ELSEWHERE, HOLD
 
 
 @kernel
-def bit(node):  # type: ignore[no-untyped-def]
+def bit(node):
     """Return the word of a node's bit."""
     return ONE << np.uint64(node & 63)
 
 
 @kernel
-def has(row, node):  # type: ignore[no-untyped-def]
+def has(row, node):
     """Return whether a set has a node; -1 is in no set."""
     return node >= 0 and (row[node >> 6] & bit(node)) != 0
 
 
 @kernel
-def put(row, node):  # type: ignore[no-untyped-def]
+def put(row, node):
     """Add a node to a set."""
     row[node >> 6] |= bit(node)
 
 
 @kernel
-def take(row, node):  # type: ignore[no-untyped-def]
+def take(row, node):
     """Take a node out of a set."""
     row[node >> 6] &= ~bit(node)

@@ -1,7 +1,5 @@
 """The nodes that an agent sees, and those inside closed containers, as `observation.visible_nodes` has them."""
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 import numpy as np

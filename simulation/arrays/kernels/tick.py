@@ -1,7 +1,5 @@
 """One tick of many worlds: `engine.tick`, then the goal, the reward, and the observations of the agents."""
 
-# mypy: disable-error-code="no-untyped-def"
-
 from __future__ import annotations
 
 from typing import Any
@@ -46,10 +44,10 @@ STEP, LOOK = range(2)
 """Tasks of `advance`."""
 
 REWARDS, SIGHT, ARRAYS = 1, 2, 3
-"""How much a step computes: the goal and the reward; masks, too; arrays, too."""
+"""Levels of a step: the goal and the reward; masks, too; arrays, too."""
 
 REFUSED, CONFLICT, MISSING = 1, 16, 256
-"""Bits of a world's status: for each agent whether it was refused, and whether only after what another did; a distance
+"""Bits of a world's status: for each agent whether it was refused, and whether another's act is the reason; a distance
 field is missing, so that the tick waits."""
 
 
