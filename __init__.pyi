@@ -1,5 +1,6 @@
 from duckdb import DuckDBPyConnection
 
+from hearth.challenges.array_homes import ArrayHomes as ArrayHomes
 from hearth.challenges.language_runs import run_tasks as run_tasks
 from hearth.challenges.task_files import suite as suite
 from hearth.datasets.dataset import Dataset as Dataset

@@ -2,9 +2,9 @@
 
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import (
+    Becomes,
     Check,
     able,
-    becomes,
     checked,
     close,
     free_hand,
@@ -31,12 +31,12 @@ _not_on = not_in_state(ON, Code.IS_ON)
 _not_unplugged = not_in_state(PLUGGED_OUT, Code.IS_UNPLUGGED)
 
 ACTIONS = (
-    checked("Open", able, close, free_hand, _of_pair(CLOSED, Code.IS_OPEN), _not_on, effect=becomes(OPEN)),
-    checked("Close", able, close, _of_pair(OPEN, Code.IS_CLOSED), effect=becomes(CLOSED)),
-    checked("SwitchOn", able, close, in_state(OFF, Code.IS_ON), _not_unplugged, effect=becomes(ON)),
-    checked("SwitchOff", able, close, in_state(ON, Code.IS_OFF), effect=becomes(OFF)),
-    checked("PlugIn", able, close, free_hand, in_state(PLUGGED_OUT, Code.IS_PLUGGED), effect=becomes(PLUGGED_IN)),
+    checked("Open", able, close, free_hand, _of_pair(CLOSED, Code.IS_OPEN), _not_on, effect=Becomes(OPEN)),
+    checked("Close", able, close, _of_pair(OPEN, Code.IS_CLOSED), effect=Becomes(CLOSED)),
+    checked("SwitchOn", able, close, in_state(OFF, Code.IS_ON), _not_unplugged, effect=Becomes(ON)),
+    checked("SwitchOff", able, close, in_state(ON, Code.IS_OFF), effect=Becomes(OFF)),
+    checked("PlugIn", able, close, free_hand, in_state(PLUGGED_OUT, Code.IS_PLUGGED), effect=Becomes(PLUGGED_IN)),
     # The plug of a running device may be pulled, as the release allows.
-    checked("PlugOut", able, close, free_hand, in_state(PLUGGED_IN, Code.IS_UNPLUGGED), effect=becomes(PLUGGED_OUT)),
+    checked("PlugOut", able, close, free_hand, in_state(PLUGGED_IN, Code.IS_UNPLUGGED), effect=Becomes(PLUGGED_OUT)),
     checked("Type", close, able),
 )

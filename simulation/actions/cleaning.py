@@ -1,7 +1,7 @@
 """Wipe, Wash, Rinse, Scrub, Squeeze."""
 
 from hearth.schemas.failures import Code, Failure
-from hearth.simulation.actions.common import Check, able, becomes, checked, close, free_hand, refuse
+from hearth.simulation.actions.common import Becomes, Check, able, checked, close, free_hand, refuse
 from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.states import CLEAN
 from hearth.simulation.world.world import World
@@ -17,9 +17,9 @@ def _need_tool(world: World, agent: Agent, o: int, action: str) -> Failure | Non
 _tool = Check(_need_tool, lambda s, _: -1 if s.held else 0)
 
 ACTIONS = (
-    checked("Wipe", close, _tool, effect=becomes(CLEAN)),
-    checked("Wash", close, effect=becomes(CLEAN)),
-    checked("Rinse", close, effect=becomes(CLEAN)),
-    checked("Scrub", close, effect=becomes(CLEAN)),
+    checked("Wipe", close, _tool, effect=Becomes(CLEAN)),
+    checked("Wash", close, effect=Becomes(CLEAN)),
+    checked("Rinse", close, effect=Becomes(CLEAN)),
+    checked("Scrub", close, effect=Becomes(CLEAN)),
     checked("Squeeze", free_hand, close, able),
 )

@@ -3,9 +3,12 @@
 A check is made for one object by the engine and for all nodes at once by `legal`; both readings of it stand together.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
+from dataclasses import dataclass
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.vocabulary import STATES
@@ -36,11 +39,23 @@ class Action(NamedTuple):
         name: as in the knowledge, which has its roles, needs, literals and groups.
         rule: does it, or refuses.
         mask: the objects for which the rule does not refuse.
+        effect: what it does once its checks hold, as a value (`Becomes`, `unchanged`) or a function; None where only
+            the rule knows.
+        variant: chooses the record that is in force by the rules; None where there is one record.
     """
 
     name: str
     rule: Rule
     mask: Mask
+    effect: Effect | None = None
+    variant: Callable[[Rules], Any] | None = None
+
+    def under(self, rules: Rules) -> Action:
+        """Return the record that is in force by the rules."""
+        record = self
+        while record.variant is not None:
+            record = record.variant(rules)
+        return record
 
 
 class Check(NamedTuple):
@@ -55,13 +70,24 @@ class Check(NamedTuple):
     mask: Callable[[Situation, str], int]
 
 
-def becomes(state: int) -> Effect:
-    """Return the effect that the object enters a state."""
+@dataclass(frozen=True, slots=True)
+class Becomes:
+    """The effect that the object enters a state, as a value that other engines can read.
 
-    def effect(world: World, number: int, o: int, rules: Rules) -> World:
-        return World(world.home, with_state(world.states, state, 1 << o), world.agents, world.moved)
+    Attributes:
+        state: its number; the object leaves the opposite.
+    """
 
-    return effect
+    state: int
+
+    def __call__(self, world: World, number: int, o: int, rules: Rules) -> World:
+        """Return the world in which the object is in the state."""
+        return World(world.home, with_state(world.states, self.state, 1 << o), world.agents, world.moved)
+
+
+def unchanged(world: World, number: int, o: int, rules: Rules) -> World:
+    """Return the same world: the effect of an action that changes nothing."""
+    return world
 
 
 def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
@@ -86,7 +112,7 @@ def checked(name: str, *checks: Check, effect: Effect | None = None) -> Action:
                 return None
         return (found,)
 
-    return Action(name, rule, mask)
+    return Action(name, rule, mask, unchanged if effect is None else effect)
 
 
 def by_rule(name: str, on: Action, off: Action) -> Action:
@@ -106,7 +132,7 @@ def by_rule(name: str, on: Action, off: Action) -> Action:
     def mask(situation: Situation) -> Masks:
         return (on if is_on(situation.rules) else off).mask(situation)
 
-    return Action(on.name, rule, mask)
+    return Action(on.name, rule, mask, variant=lambda rules: on if is_on(rules) else off)
 
 
 def refuse(world: World, code: Code, expected: str, actual: str, *objects: int) -> Failure:

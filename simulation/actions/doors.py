@@ -53,6 +53,12 @@ def open_rooms(world: World, agent: Agent) -> int:
     return home.rooms & (_reached(home, start, closed) | ~_reached(home, start, 0))
 
 
+def reached_rooms(world: World, agent: Agent) -> int:
+    """Return the rooms that a character, which is in one, reaches through open doors; its own, too."""
+    start = edge_rows.agent_room(world, agent)
+    return _reached(world.home, start, world.home.doors & world.states[CLOSED])
+
+
 def side(world: World, agent: Agent, door: int, room: int) -> int:
     """Index of the room from which a character comes to a door: `room`, which it is in, if that can be reached; else
     one that it is BETWEEN and that can be, the character's own before others; else `room` again.
@@ -60,7 +66,7 @@ def side(world: World, agent: Agent, door: int, room: int) -> int:
     start = edge_rows.agent_room(world, agent)
     if start < 0:
         return room
-    reached = _reached(world.home, start, world.home.doors & world.states[CLOSED])
+    reached = reached_rooms(world, agent)
     if room >= 0 and reached >> room & 1:
         return room
     within = world.home.between[door] & world.home.rooms & reached

@@ -203,15 +203,7 @@ def _need_nobody_resting(world: World, agent: Agent, o: int, action: str) -> Fai
     return None
 
 
-def _unused(s: Situation, action: str) -> int:
-    resting, used = s.states[SITTING] | s.states[LYING], 0
-    for other in s.world.agents:
-        if resting & other.bit:
-            used |= other.on
-    return ~used
-
-
-_nobody_resting = Check(_need_nobody_resting, _unused)
+_nobody_resting = Check(_need_nobody_resting, lambda s, _: ~s.in_use)
 
 _nobody_else = Check(_need_nobody_else, lambda s, _: ~s.held_by_others)
 

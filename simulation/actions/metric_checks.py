@@ -6,19 +6,15 @@ the things that it passes, in the room that it crosses. A character that has arr
 
 from __future__ import annotations
 
-import math
-
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.common import Action, Masks, refuse, some
 from hearth.simulation.actions.locomotion import arrived, destination, gone, need_legs
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import Here, ground_of
-from hearth.simulation.motion.navigation import BODY_RADIUS
+from hearth.simulation.motion.stride_ahead import closed_doors, in_the_way, others_of, stride_ahead
 from hearth.simulation.rules import Rules
-from hearth.simulation.world.agent import Agent
 from hearth.simulation.world.pose import Pose
-from hearth.simulation.world.states import CLOSED
 from hearth.simulation.world.world import World
 
 TURN = 30.0
@@ -39,10 +35,10 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
     if here is None or pose is None or not ends:
         return refuse(world, Code.NO_PATH, "something with a place", "no place of it is known", o)
     ways = here.ground.ways
-    shut = here.ground.shut(_closed(world, rules))
+    shut = here.ground.shut(closed_doors(world, rules))
     x, z, cell = ways.stepped(ways.field(ends, shut), pose.x, pose.z, agent.stride)
-    if rules.bodies and cell != -2 and _in_the_way(world, number, (pose, Pose(x, z))):
-        taken = ways.blocked(other.pose.point for other in _others(world, number) if other.pose is not None)
+    if rules.bodies and cell != -2 and in_the_way(world, number, (pose, Pose(x, z))):
+        taken = ways.blocked(other.pose.point for other in others_of(world, number) if other.pose is not None)
         taken[ways.around(pose.x, pose.z)] = False
         without = tuple(sorted({*shut, *taken.nonzero()[0].tolist()}))
         x, z, cell = ways.stepped(ways.detour(ends, without), pose.x, pose.z, agent.stride)
@@ -64,57 +60,15 @@ def walk_forward(world: World, number: int, _: int, __: int, rules: Rules) -> Wo
     if failure is not None:
         return failure
     here = ground_of(world.home)
-    there, free = _ahead(world, number, here, rules)
+    there, free = stride_ahead(world, number, rules)
     if here is None or there is None:
         return refuse(world, Code.NO_PATH, f"{agent.stride:g} m of free floor ahead", f"{free:.2f} m")
     return _under_way(world, number, here, there)
 
 
-def _ahead(world: World, number: int, here: Here | None, rules: Rules) -> tuple[Pose | None, float]:
-    """Return the place a stride ahead, or None with the metres that are free."""
-    agent = world.agents[number]
-    pose = agent.pose
-    if here is None or pose is None:
-        return None, 0.0
-    angle = math.radians(pose.yaw)
-    step = (math.sin(angle) * agent.stride, math.cos(angle) * agent.stride)
-    free = here.ground.ways.ahead(pose.point, step, here.ground.shut(_closed(world, rules)))
-    if free < 1.0:
-        return None, free * agent.stride
-    there = Pose(pose.x + step[0], pose.z + step[1], pose.yaw)
-    if rules.bodies and _in_the_way(world, number, (pose, there)):
-        return None, 0.0
-    return there, agent.stride
-
-
 def _under_way(world: World, number: int, here: Here, pose: Pose) -> World:
     near, room = positions.around(world, number, here, pose)
     return gone(world, number, near, room, pose)
-
-
-def _closed(world: World, rules: Rules) -> int:
-    return world.home.doors & world.states[CLOSED] if rules.doors else 0
-
-
-def _others(world: World, number: int) -> list[Agent]:
-    return [other for i, other in enumerate(world.agents) if i != number]
-
-
-def _in_the_way(world: World, number: int, leg: tuple[Pose, Pose]) -> bool:
-    """Return whether a stride comes nearer to another character than both bodies need, and not only away from it."""
-    start, end = leg
-    dx, dz = end.x - start.x, end.z - start.z
-    square = dx * dx + dz * dz
-    for other in _others(world, number):
-        at = other.pose
-        if at is None:
-            continue
-        share = ((at.x - start.x) * dx + (at.z - start.z) * dz) / square if square else 0.0
-        if share > 0:
-            share = min(1.0, share)
-            if math.hypot(start.x + dx * share - at.x, start.z + dz * share - at.z) < 2 * BODY_RADIUS:
-                return True
-    return False
 
 
 def turn(degrees: float) -> Action:
@@ -134,13 +88,13 @@ def turn(degrees: float) -> Action:
 def _towards(s: Situation) -> Masks:
     if s.resting:
         return None
-    return some(s.walkable & positions.walked_to(s.world, s.number, _closed(s.world, s.rules)))
+    return some(s.walkable & s.walked_to)
 
 
 def _forward(s: Situation) -> Masks:
     if s.resting:
         return None
-    return () if _ahead(s.world, s.number, ground_of(s.home), s.rules)[0] is not None else None
+    return () if s.ahead else None
 
 
 ACTIONS = (

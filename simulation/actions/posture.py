@@ -6,7 +6,7 @@ from hearth.simulation.actions.situation import Situation
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent, made
-from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import LYING, SITTING, with_state
 from hearth.simulation.world.world import World
 
@@ -65,18 +65,6 @@ def _not_already(state: int, code: Code, name: str) -> Check:
     return Check(refusal, lambda s, _: 0 if s.states[state] & s.me.bit else -1)
 
 
-def _free(s: Situation, places: int, lying: bool, made_bed: bool) -> int:
-    """Return the seats or beds, of all that there are, on which fewer things are than the limit."""
-    world, known = s.world, s.home.free_places
-    key = places, lying, made_bed, tuple([(agent.bit, agent.on, agent.worn) for agent in world.agents])
-    found = known.find(world.moved, key)
-    if found is None:
-        taken = ((i, edge_rows.taking_room(world, i, made_bed)) for i in indices(places))
-        free = mask_of(i for i, things in taken if things.bit_count() < s.home.limit(i, lying))
-        found = known.keep(world.moved, key, free)
-    return found
-
-
 def _unoccupied(lying: bool, made_bed: bool) -> Check:
     """Fewer things are on the seat or bed than its limit; by the rule `made_bed`, bedding of a bed aside."""
 
@@ -88,10 +76,7 @@ def _unoccupied(lying: bool, made_bed: bool) -> Check:
         fewer = f"fewer than {limit} on it{' besides bedding' if made_bed and edge_rows.turned_back(world, o) else ''}"
         return refuse(world, Code.OCCUPIED, fewer, str(taken.bit_count()), o, *indices(taken))
 
-    def mask(s: Situation, action: str) -> int:
-        return s.close & _free(s, s.able(action), lying, made_bed)
-
-    return Check(refusal, mask)
+    return Check(refusal, lambda s, action: s.with_room(s.able(action) & s.close, lying, made_bed))
 
 
 def _resting_on(name: str, lying: bool, already: Check, effect: Effect) -> Action:

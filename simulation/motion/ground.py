@@ -124,25 +124,25 @@ class Ground:
 
     def reached(self, cell: int, doors: int) -> int:
         """Return the nodes at whose standing places one arrives from a cell while these doors are closed."""
-        region = self._regions(doors)
+        region = self.regions(doors)
         key = region[cell], doors
         if key not in self._reached:
-            every = range(len(self.home))
+            every = range(len(self.home)) if key[0] > 0 else ()  # no way leads from a cell that is not free
             self._reached[key] = mask_of(i for i in every if any(region[s] == key[0] for s in self.stands(i)))
         return self._reached[key]
 
     def joined(self, one: int, other: int, doors: int) -> bool:
         """Return whether a way leads from one cell to another while these doors are closed."""
-        region = self._regions(doors)
-        return region[one] == region[other]
+        region = self.regions(doors)
+        return region[one] == region[other] > 0
 
-    def _regions(self, doors: int) -> list[int]:
-        """By cell the number of its region; cells that are not free have one of their own each."""
+    def regions(self, doors: int) -> list[int]:
+        """Return each cell's region, from 1, while some doors are closed; -1 of a cell that is not free."""
         if doors not in self._numbered:
             free = self.floor.walkable.copy()
             free[tuple(self.ways.cells[list(self.shut(doors))].T)] = False
             found = grid_shapes.regions(free)[self.floor.walkable]
-            found[found == 0] = -1 - np.flatnonzero(found == 0)
+            found[found == 0] = -1
             self._numbered[doors] = found.tolist()
         return self._numbered[doors]
 

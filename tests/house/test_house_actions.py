@@ -11,8 +11,13 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-TABLES = ("simulation/actions/", "simulation/motion/moves.py", "rendering/people/gestures.py")
-"""The table of actions, that of the moves by metres, and the gesture of each action."""
+TABLES = (
+    "simulation/arrays/action_table.py",
+    "simulation/actions/",
+    "simulation/motion/moves.py",
+    "rendering/people/gestures.py",
+)
+"""The table of actions, that of the moves by metres, the kernel and the gesture of each action."""
 
 MANY = 2
 

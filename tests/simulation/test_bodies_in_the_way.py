@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from walks import at, id_of, step, walked
 
 from hearth.homes.plans.floor import REACH
-from hearth.simulation.actions.metric_checks import _in_the_way
 from hearth.simulation.engine import tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.navigation import BODY_RADIUS
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.motion.stride_ahead import in_the_way
 from hearth.simulation.rules import DEFAULT
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
@@ -45,7 +45,7 @@ def test_who_is_in_the_way_of_a_stride(numbers):
     away = [math.dist((x0 + (x1 - x0) * n / 500, z0 + (z1 - z0) * n / 500), (x, z)) for n in range(501)]
     comes_nearer = min(away) < away[0]
     if abs(min(away) - 2 * BODY_RADIUS) > 1e-3:
-        assert _in_the_way(world, 0, leg) == (comes_nearer and min(away) < 2 * BODY_RADIUS)
+        assert in_the_way(world, 0, leg) == (comes_nearer and min(away) < 2 * BODY_RADIUS)
 
 
 def test_of_two_that_walk_the_lower_number_goes_first(maple):

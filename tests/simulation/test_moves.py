@@ -233,3 +233,12 @@ def test_legal_is_exactly_what_can_be_done_at_a_place(seed):
             ways = ground_of(world.home).ground.ways
             pose = world.agents[number].pose
             assert world.agents[number].on or ways.main[ways.at(*pose.point)]
+
+
+def test_nobody_walks_to_a_closed_doorway_in_which_it_stands(maple):
+    """A door is closed where somebody stands: the mask and the rule agree that no way leads from there to there."""
+    here = ground_of(maple)
+    door = next(indices(maple.doors))
+    for cell in here.ground.shut(1 << door):
+        assert here.ground.reached(cell, 1 << door) == 0
+        assert not here.ground.joined(cell, cell, 1 << door) and here.ground.joined(cell, cell, 0)

@@ -1,0 +1,57 @@
+"""A stride straight ahead, and other characters in the way of one."""
+
+from __future__ import annotations
+
+import math
+
+from hearth.simulation.motion.ground import ground_of
+from hearth.simulation.motion.navigation import BODY_RADIUS
+from hearth.simulation.rules import Rules
+from hearth.simulation.world.agent import Agent
+from hearth.simulation.world.pose import Pose
+from hearth.simulation.world.states import CLOSED
+from hearth.simulation.world.world import World
+
+
+def closed_doors(world: World, rules: Rules) -> int:
+    """Return the doors that stop a walk."""
+    return world.home.doors & world.states[CLOSED] if rules.doors else 0
+
+
+def stride_ahead(world: World, number: int, rules: Rules) -> tuple[Pose | None, float]:
+    """Return the place a stride ahead, or None with the metres that are free."""
+    agent = world.agents[number]
+    here, pose = ground_of(world.home), agent.pose
+    if here is None or pose is None:
+        return None, 0.0
+    angle = math.radians(pose.yaw)
+    step = (math.sin(angle) * agent.stride, math.cos(angle) * agent.stride)
+    free = here.ground.ways.ahead(pose.point, step, here.ground.shut(closed_doors(world, rules)))
+    if free < 1.0:
+        return None, free * agent.stride
+    there = Pose(pose.x + step[0], pose.z + step[1], pose.yaw)
+    if rules.bodies and in_the_way(world, number, (pose, there)):
+        return None, 0.0
+    return there, agent.stride
+
+
+def others_of(world: World, number: int) -> list[Agent]:
+    """Return the other characters."""
+    return [other for i, other in enumerate(world.agents) if i != number]
+
+
+def in_the_way(world: World, number: int, leg: tuple[Pose, Pose]) -> bool:
+    """Return whether a stride comes nearer to another character than both bodies need, and not only away from it."""
+    start, end = leg
+    dx, dz = end.x - start.x, end.z - start.z
+    square = dx * dx + dz * dz
+    for other in others_of(world, number):
+        at = other.pose
+        if at is None:
+            continue
+        share = ((at.x - start.x) * dx + (at.z - start.z) * dz) / square if square else 0.0
+        if share > 0:
+            share = min(1.0, share)
+            if math.hypot(start.x + dx * share - at.x, start.z + dz * share - at.z) < 2 * BODY_RADIUS:
+                return True
+    return False
