@@ -39,12 +39,6 @@ class ArrayHomes(ArrayWorlds):
 
     Raises:
         HearthError: BAD_ARGUMENT: no such challenge or split; a home, goal or start out of scope.
-
-    Examples:
-        >>> homes = hearth.ArrayHomes("wah", worlds=8, limit_tasks=2)
-        >>> observations, infos = homes.reset(seed=1)
-        >>> observations["mask"].shape[0], int(observations["mask"][0, 0])
-        (8, 1)
     """
 
     def __init__(
