@@ -91,7 +91,7 @@ def _document(dataset: Dataset, text: str) -> None:
 
 def _table(dataset: Dataset, text: str, rows: int) -> None:
     """Print an answer as a table, with a last line where it has more rows than asked for."""
-    columns, found = dataset.rows(text, rows + 1 if rows else None)
+    columns, found = dataset.rows_as_text(text, rows + 1 if rows else None)
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:

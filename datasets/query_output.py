@@ -16,7 +16,7 @@ import pyarrow.types as kinds
 
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.catalog import without_zones
+from hearth.datasets.format.catalog import INTERVALS, exact
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.batch_sizes import ROWS_OF_AN_ANSWER
@@ -86,17 +86,39 @@ def write_separated(
 def _each(column: Any, form: Callable[[Any], Any]) -> Any:
     """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
     kind = column.type
+    if kinds.is_date32(kind) or kinds.is_timestamp(kind):
+        return map(form, _moments(column))
     try:
         values = column.to_pylist()
-    except (OverflowError, ValueError):  # a date that Python has none for
-        values = _days(column) if kinds.is_date32(kind) else [str(each) for each in column]
+    except (OverflowError, ValueError) as error:
+        message = f"a value within a {kind} is a date that is infinite or after the year 9999"
+        raise HearthError.of(
+            Code.BAD_ARGUMENT, message, suggestion="`CAST(... AS VARCHAR)` gives it as text"
+        ) from error
     kept = kinds.is_signed_integer(kind) or kinds.is_floating(kind) or kinds.is_boolean(kind) or kinds.is_string(kind)
     return values if kept else map(form, values)
 
 
-def _days(column: Any) -> list[str | None]:
-    """Return days as text, those after the year 9999 too."""
-    return [None if day is None else str(np.datetime64(day, "D")) for day in column.cast(pa.int32()).to_pylist()]
+def _moments(column: Any) -> list[Any]:
+    """Return days or times as Python has them; those that it has none for as text, `infinity` among them."""
+    kind = column.type
+    numbers = column.cast(pa.int32() if kinds.is_date32(kind) else pa.int64()).to_pylist()
+    endless = 2**31 - 1 if kinds.is_date32(kind) else 2**63 - 1
+    unit = "D" if kinds.is_date32(kind) else kind.unit
+    if not any(number is not None and abs(number) == endless for number in numbers):
+        try:
+            return list(column.to_pylist())
+        except (OverflowError, ValueError):
+            pass
+    return [_moment(number, endless, unit) for number in numbers]
+
+
+def _moment(number: int | None, endless: int, unit: str) -> str | None:
+    if number is None:
+        return None
+    if abs(number) == endless:
+        return "infinity" if number > 0 else "-infinity"
+    return str(np.datetime64(number, unit)).replace("T", " ")
 
 
 def _records(columns: list[str], batch: Any) -> list[dict[str, Any]]:
@@ -143,7 +165,7 @@ def _json(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _parquet(dataset: Dataset, query: str, path: Path) -> int:
-    reader = without_zones(dataset.sql(query)).to_arrow_reader(ROWS_OF_AN_ANSWER)
+    reader = exact(dataset.sql(query), INTERVALS).to_arrow_reader(ROWS_OF_AN_ANSWER)
     number = 0
     with pq.ParquetWriter(path, reader.schema) as file:
         for batch in reader:

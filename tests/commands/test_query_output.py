@@ -216,8 +216,9 @@ def test_joiners_of_writing_and_pictures_stay(dataset):
     assert text in run(dataset, f"SELECT '{text}' AS w").stdout
 
 
-def test_values_without_a_form_are_refused_without_a_trace(dataset):
-    result = run(dataset, "FROM test_all_types()")
+def test_values_of_all_types_are_printed_and_infinite_ones_within_others_are_refused_for_files(dataset):
+    assert run(dataset, "FROM test_all_types()").exit_code == 0
+    result = run(dataset, "FROM test_all_types()", "--json")
     assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output and "Traceback" not in result.output
 
 
