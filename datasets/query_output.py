@@ -204,5 +204,8 @@ def write_answer(dataset: Dataset, query: str, path: Path, form: str = "") -> in
     if path.is_dir() or not path.absolute().parent.is_dir():
         remedy = "name a file in a folder that there is"
         raise HearthError.of(Code.UNWRITABLE, "no file can be written there", file=str(path), suggestion=remedy)
+    if path.resolve().is_relative_to(dataset.folder.resolve()):
+        message = "this is a place in the dataset that is asked, which stays as it was published"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(path), suggestion="name a file outside of it")
     with using(dataset.folder), replacing(path) as temporary:
         return WRITERS[form](dataset, query, temporary)
