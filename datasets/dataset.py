@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache, cached_property, partial
@@ -12,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from hearth.datasets.consistent_reads import steady, version
 from hearth.datasets.damage_faults import reading, refused_question, too_slow, using
 from hearth.datasets.file_id_ranges import reading_between
-from hearth.datasets.format.catalog import DATES, VIEWS, absent_tables, attach, define_as, describe, exact
+from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe
+from hearth.datasets.format.exact_types import PYTHON, TEXT, exactly
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.published_program import Entry, Run
@@ -174,21 +174,21 @@ class Dataset:
         Raises:
             HearthError: as of `sql`; TIMED_OUT, after `within` seconds; FILE_TOO_LARGE, where memory is short.
         """
-        return self._fetched(query, limit, parameters)
+        return self._fetched(query, limit, parameters, PYTHON)
 
     @explained
     def rows_as_text(self, query: str, limit: int | None = None) -> tuple[list[str], list[tuple[Any, ...]]]:
         """Return what `rows` does, with dates and times as DuckDB writes them, infinite ones among them."""
-        return self._fetched(query, limit, {}, DATES)
+        return self._fetched(query, limit, {}, TEXT)
 
     def _fetched(
-        self, query: str, limit: int | None, parameters: Mapping[str, Any], as_text: re.Pattern[str] | None = None
+        self, query: str, limit: int | None, parameters: Mapping[str, Any], kept: frozenset[str]
     ) -> tuple[list[str], list[tuple[Any, ...]]]:
         def ask() -> tuple[list[str], list[tuple[Any, ...]]]:
             with self._asking():
                 relation = self.sql(query, **parameters)
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
-                return list(relation.columns), exact(found, as_text).fetchall()
+                return list(relation.columns), exactly(found, kept).fetchall()
 
         return steady(self.folder, ask)
 
@@ -199,7 +199,7 @@ class Dataset:
         One batch is in memory at a time. The time limit runs until the last one is taken.
         """
         with self._asking():
-            relation = exact(self.sql(query, **parameters))
+            relation = exactly(self.sql(query, **parameters))
 
         def found() -> Iterator[Any]:
             with self._asking():

@@ -213,31 +213,3 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
         remedy = "fetch the dataset again, or publish it again with this version"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
     return missing
-
-
-INEXACT = re.compile(r"WITH TIME ZONE|\b(?:UHUGEINT|BIT|BIGNUM|VARINT|TIME)\b")
-"""Types of DuckDB whose values Arrow or Python alters: zones are lost, 2^127 and more become negative, bits become
-bytes, and 24:00:00 becomes 00:00:00."""
-
-DATES = re.compile(r"\b(?:DATE|TIMESTAMP\w*)\b")
-"""Types of DuckDB with infinite values, for which Python has the last day of the year 9999."""
-
-
-INTERVALS = re.compile(r"\bINTERVAL\b|\bTIMESTAMP_S\b")
-"""Types of DuckDB that Parquet has no form for, or none for all values."""
-
-
-def exact(relation: Any, as_text: re.Pattern[str] | None = None) -> Any:
-    """Return a relation in which values that Arrow or Python would alter are text.
-
-    Args:
-        relation: of DuckDB.
-        as_text: further types whose values are text.
-    """
-    kinds = list(map(str, relation.types))
-    altered = [bool(INEXACT.search(kind) or (as_text and as_text.search(kind))) for kind in kinds]
-    if not any(altered):
-        return relation
-    names = ['"' + name.replace('"', '""') + '"' for name in relation.columns]
-    cells = (f"CAST(#{n} AS VARCHAR)" if is_altered else f"#{n}" for n, is_altered in enumerate(altered, 1))
-    return relation.project(", ".join(f"{cell} AS {name}" for cell, name in zip(cells, names, strict=True)))

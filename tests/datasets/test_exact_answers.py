@@ -9,14 +9,11 @@ import pytest
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.query_output import write_answer
-from hearth.schemas.diagnostics import HearthError
-from hearth.schemas.failures import Code
 
 LARGEST = "340282366920938463463374607431768211455"
 
 VALUES = {
     f"{LARGEST}::UHUGEINT": LARGEST,
-    f"[{LARGEST}::UHUGEINT]": f"[{LARGEST}]",
     "'101'::BIT": "101",
     "'24:00:00'::TIME": "24:00:00",
     "'12:00:00+02'::TIMETZ": "12:00:00+02",
@@ -58,7 +55,6 @@ def test_rows_as_text_have_the_value(dataset, value):
     assert dataset.rows_as_text(f"SELECT {value} AS v")[1] == [(VALUES[value],)]
 
 
-def test_an_infinite_date_within_a_value_is_refused(dataset, tmp_path):
-    with pytest.raises(HearthError) as raised:
-        write_answer(dataset, "SELECT {'a': 'infinity'::DATE} AS v", tmp_path / "a.json")
-    assert raised.value.diagnostics[0].code is Code.BAD_ARGUMENT
+def test_an_infinite_date_within_a_value_is_said(dataset, tmp_path):
+    write_answer(dataset, "SELECT {'a': 'infinity'::DATE} AS v", tmp_path / "a.json")
+    assert json.loads((tmp_path / "a.json").read_text()) == [{"v": {"a": "infinity"}}]
