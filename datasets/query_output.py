@@ -16,6 +16,7 @@ import pyarrow.types as kinds
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.exact_types import FILE, exactly
+from hearth.datasets.places_outside import check_outside
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.batch_sizes import ROWS_OF_AN_ANSWER
@@ -174,8 +175,6 @@ def write_answer(dataset: Dataset, query: str, path: Path, form: str = "") -> in
     if path.is_dir() or not path.absolute().parent.is_dir():
         remedy = "name a file in a folder that there is"
         raise HearthError.of(Code.UNWRITABLE, "no file can be written there", file=str(path), suggestion=remedy)
-    if path.resolve().is_relative_to(dataset.folder.resolve()):
-        message = "this is a place in the dataset that is asked, which stays as it was published"
-        raise HearthError.of(Code.UNWRITABLE, message, file=str(path), suggestion="name a file outside of it")
+    check_outside(path, dataset.folder)
     with using(dataset.folder), replacing(path) as temporary:
         return WRITERS[form](dataset, query, temporary)

@@ -78,6 +78,10 @@ def test_no_answer_is_written_into_the_dataset(made, tmp_path, place):
     words = ["query", str(tmp_path / "copy"), "SELECT 1", "--out", str(tmp_path / place)]
     result = CliRunner().invoke(cli.app, words)
     assert result.exit_code == 1 and "UNWRITABLE" in result.output
+    for command in (["export", "--format", "csv"], ["report"]):
+        words = [command[0], str(tmp_path / "copy"), *command[1:], "--out", str((tmp_path / place).parent / "new")]
+        result = CliRunner().invoke(cli.app, words)
+        assert result.exit_code == 1 and "stays as it was published" in result.output
     assert before == {path: path.read_bytes() for path in (tmp_path / "copy").rglob("*") if path.is_file()}
 
 
