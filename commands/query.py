@@ -85,7 +85,7 @@ def _question(sql: str) -> str:
     """
     from hearth.storage.input_files import read_input
 
-    # Bytes that are no text are refused with the question, which names their place.
+    # Bytes that are not text are refused with the question; the message names their place.
     return read_input(Path(sql), LARGEST_QUESTION).decode("utf-8", "surrogateescape") if sql == "-" else sql
 
 

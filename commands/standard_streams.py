@@ -35,8 +35,10 @@ def _closed(number: int) -> bool:
 
 def end_without_output(why: str) -> NoReturn:
     """Say why nothing can be written to the standard output, and end the process: what is left of it is lost."""
+    from hearth.commands import output
+
     try:
-        sys.stderr.write(f"error[UNWRITABLE]: the standard output cannot be written: {why}\n")
+        output.note(f"error[UNWRITABLE]: the standard output cannot be written: {why}")
         sys.stderr.flush()
     finally:
         os._exit(REFUSED)
