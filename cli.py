@@ -35,6 +35,7 @@ from typer.core import TyperGroup
 
 from hearth.commands.command_line_name import program_name, show_name
 from hearth.commands.plain_help import make_plain
+from hearth.commands.standard_streams import check_streams, end_without_output
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 
@@ -238,7 +239,7 @@ def _of_the_machine(error: OSError) -> Diagnostic:
     import errno
 
     name = str(error.filename or "")
-    full = error.errno in (errno.EROFS, errno.ENOSPC, errno.EDQUOT)
+    full = error.errno in (errno.EROFS, errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
     forbidden = error.errno in (errno.EACCES, errno.EPERM) and not Path(name).is_file()
     code = Code.UNWRITABLE if full or forbidden else Code.MISSING_FILE
     return Diagnostic(code, str(error.strerror or error).lower(), file=name)
@@ -279,6 +280,21 @@ def _options(
     """
 
 
+def _run(command: Any) -> None:
+    """Run the command to the last byte of its output: what the system refuses then has no command to say it."""
+    try:
+        try:
+            command(prog_name=program_name())
+        finally:
+            sys.stdout.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:  # every other error of the machine was said; `--debug` lets errors through
+        if "--debug" in sys.argv or os.environ.get("HEARTH_DEBUG"):
+            raise
+        end_without_output(str(error.strerror or error).lower())
+
+
 def main() -> None:
     """Run the command line. Statuses: 0 done, 1 bad input, 2 wrong usage, 130 and 143 stopped."""
     import signal
@@ -287,13 +303,14 @@ def main() -> None:
         raise Terminated
 
     signal.signal(signal.SIGTERM, stop)
+    check_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # half characters, and terminals that have few
     command = typer.main.get_command(app)
     show_name(command)
     try:
-        command(prog_name=program_name())
+        _run(command)
     finally:  # from here on a signal to end has nobody to tell
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 

@@ -66,13 +66,13 @@ def check(
 def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
     """Correct one file if it is program text; the difference as a diff."""
     from hearth.pipelines.checks import fixes
-    from hearth.storage.files import write_bytes
+    from hearth.storage.files import rewrite
 
     if not path.is_file() or (text := _program_text(path, str(path))) is None:
         return ""
     new = fixes.fixed(text, knowledge)
     if write and new != text:
-        write_bytes(path, new.encode())
+        rewrite(path, new.encode())
     return fixes.difference(text, new, str(path))
 
 

@@ -60,7 +60,7 @@ def query(
     except HearthError as error:
         output.report(error.diagnostics)
         raise typer.Exit(output.USAGE) from error
-    text = sys.stdin.read() if sql == "-" else sql
+    text = _question(sql)
     challenge = ChallengeData.found(dataset)
     opened = Dataset.open(dataset, remembers=False) if challenge is None else challenge
     opened.within = within
@@ -71,6 +71,22 @@ def query(
             _document(opened, text)
         else:
             _table(opened, text, rows)
+
+
+LARGEST_QUESTION = 1 << 20
+"""Bytes of a question that comes from the standard input."""
+
+
+def _question(sql: str) -> str:
+    """Return the question in SQL; that of the standard input for `-`.
+
+    Raises:
+        HearthError: FILE_TOO_LARGE.
+    """
+    from hearth.storage.input_files import read_input
+
+    # Bytes that are not text are refused with the question; the message names their place.
+    return read_input(Path(sql), LARGEST_QUESTION).decode("utf-8", "surrogateescape") if sql == "-" else sql
 
 
 def _document(dataset: Dataset, text: str) -> None:
@@ -91,7 +107,7 @@ def _document(dataset: Dataset, text: str) -> None:
 
 def _table(dataset: Dataset, text: str, rows: int) -> None:
     """Print an answer as a table, with a last line where it has more rows than asked for."""
-    columns, found = dataset.rows(text, rows + 1 if rows else None)
+    columns, found = dataset.rows_as_text(text, rows + 1 if rows else None)
     more = bool(rows) and len(found) > rows
     output.table(columns, ([_cell(cell) for cell in row] for row in (found[:rows] if more else found)))
     if more:

@@ -1,5 +1,6 @@
 """`serve`: the server where people annotate, play and judge."""
 
+import re
 import sys
 from ipaddress import ip_address
 from pathlib import Path
@@ -45,15 +46,20 @@ def serve(
     from hearth.web.desk_access import desk_token
     from hearth.web.serving import listening, run
     from hearth.web.store import Store, default_url
+    from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    proxy = _proxy(proxy, public)
-    if study is not None:
-        check_helpers(named(str(study)))
+    proxy, hosts = _proxy(proxy, public), _hosts(public)
+    conduct = None if study is None else named(str(study))
+    if conduct is not None:
+        check_helpers(conduct)
     where = listening(port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     token = desk_token(out)
-    app = application(Store(store or default_url(out)), read_knowledge(kb), out, token, study, films, _hosts(public))
+    kept = Store(store or default_url(out))
+    app = application(kept, read_knowledge(kb), out, token, study, films, hosts)
+    if conduct is not None:
+        has_begun(kept, conduct)
     for name in missing():
         output.note(f"Without {name}, {THIRD_PARTY[name].purpose}: {REMEDY}.")
     desk = f"{public or address}/desk/enter/{token}"
@@ -61,6 +67,10 @@ def serve(
     output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
     sys.stdout.flush()
     run(app, where, proxy)
+
+
+_PUBLIC = re.compile(r"https://(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?|\[[0-9A-Fa-f:.]+\])(?::[0-9]{1,5})?")
+"""A public address: a name as browsers send it, and a port. Links and headers are made of it."""
 
 
 def _hosts(public: str) -> tuple[str, ...]:
@@ -76,8 +86,10 @@ def _hosts(public: str) -> tuple[str, ...]:
         name, port = found.hostname, found.port
     except ValueError:
         name, port = "", None
-    if not name or not public.startswith("https://"):
-        raise HearthError.of(Code.BAD_ARGUMENT, f"`{public[:100]}` is not an address", suggestion="https://NAME")
+    if not name or port == 0 or not _PUBLIC.fullmatch(public):
+        message = f"`{public[:100]}` is not an address: a name, without a path"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="https://NAME or https://NAME:PORT")
+    name = f"[{name}]" if ":" in name else name  # as browsers ask for an address of IPv6
     return (f"{name}:{port}" if port not in (None, 443) else name,)
 
 

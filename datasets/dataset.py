@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import cache, cached_property, partial
 from pathlib import Path
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from hearth.datasets.consistent_reads import steady, version
 from hearth.datasets.damage_faults import reading, refused_question, too_slow, using
 from hearth.datasets.file_id_ranges import reading_between
-from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe, without_zones
+from hearth.datasets.format.catalog import VIEWS, absent_tables, attach, define_as, describe
+from hearth.datasets.format.exact_types import PYTHON, TEXT, exactly
 from hearth.datasets.format.ids import names_of
 from hearth.datasets.published_manifest import published_manifest
 from hearth.datasets.published_program import Entry, Run
@@ -168,15 +169,26 @@ class Dataset:
     def rows(self, query: str, limit: int | None = None, **parameters: Any) -> tuple[list[str], list[tuple[Any, ...]]]:
         """Column names and at most `limit` rows of a query; errors as of `sql`, those of running it too.
 
+        Infinite dates are Python's first or last day.
+
         Raises:
             HearthError: as of `sql`; TIMED_OUT, after `within` seconds; FILE_TOO_LARGE, where memory is short.
         """
+        return self._fetched(query, limit, parameters, PYTHON)
 
+    @explained
+    def rows_as_text(self, query: str, limit: int | None = None) -> tuple[list[str], list[tuple[Any, ...]]]:
+        """Return what `rows` does, with dates and times as DuckDB writes them, infinite ones among them."""
+        return self._fetched(query, limit, {}, TEXT)
+
+    def _fetched(
+        self, query: str, limit: int | None, parameters: Mapping[str, Any], kept: frozenset[str]
+    ) -> tuple[list[str], list[tuple[Any, ...]]]:
         def ask() -> tuple[list[str], list[tuple[Any, ...]]]:
             with self._asking():
                 relation = self.sql(query, **parameters)
                 found = relation if limit is None or self._explains(query) else relation.limit(limit)
-                return list(relation.columns), without_zones(found).fetchall()
+                return list(relation.columns), exactly(found, kept).fetchall()
 
         return steady(self.folder, ask)
 
@@ -187,7 +199,7 @@ class Dataset:
         One batch is in memory at a time. The time limit runs until the last one is taken.
         """
         with self._asking():
-            relation = without_zones(self.sql(query, **parameters))
+            relation = exactly(self.sql(query, **parameters))
 
         def found() -> Iterator[Any]:
             with self._asking():

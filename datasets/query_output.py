@@ -1,22 +1,22 @@
 """Answers to questions as files: CSV, tab-separated, JSON and Parquet, a batch of rows in memory at a time."""
 
 from collections.abc import Callable, Iterator, Mapping
-from datetime import date, datetime, time
 from decimal import Decimal
 from itertools import chain
+from math import isfinite
 from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Any
 
-import numpy as np
 import orjson
-import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 import pyarrow.types as kinds
 
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import Dataset
-from hearth.datasets.format.catalog import without_zones
+from hearth.datasets.format.exact_types import FILE, exactly
+from hearth.datasets.places_outside import check_outside
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.batch_sizes import ROWS_OF_AN_ANSWER
@@ -29,31 +29,32 @@ def plain(value: Any) -> Any:
     """Return a value of DuckDB's for JSON; a value without a form there, such as a number over 64 bits, as text."""
     if isinstance(value, dict):
         return {str(key): plain(each) for key, each in value.items()}
-    if hasattr(value, "nanoseconds"):
-        return _interval(value)
     if isinstance(value, list | tuple):
         return [plain(each) for each in value]
+    if isinstance(value, bytes):
+        return _bytes(value)
     if isinstance(value, Decimal):
-        return plain(int(value)) if value.as_tuple().exponent == 0 else float(value)
-    kept = value is None or isinstance(value, str | float | datetime | date | time)
+        return plain(int(value)) if value.as_tuple().exponent == 0 else _fraction(value)
+    kept = value is None or isinstance(value, str) or (isinstance(value, float) and isfinite(value))
     return value if kept or (isinstance(value, int) and abs(value) < 2**63) else str(value)
 
 
-def _interval(value: Any) -> str:
-    """Return an interval of Arrow in words, as DuckDB writes it: `1 month 3 days 00:00:05`."""
-    seconds, fraction = divmod(value.nanoseconds, 1_000_000_000)
-    clock = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}"
-    clock += f".{fraction:09}".rstrip("0") if fraction else ""
-    counted = ((value.months // 12, "year"), (value.months % 12, "month"), (value.days, "day"))
-    said = [f"{number} {unit}{'s' * (number != 1)}" for number, unit in counted if number]
-    return " ".join([*said, *([clock] if value.nanoseconds or not said else [])])
+def _fraction(value: Decimal) -> float | str:
+    """Return a number as JSON's readers have it; as text, where they would round it."""
+    near = float(value)
+    return near if Decimal(repr(near)) == value else str(value)
+
+
+def _bytes(value: bytes) -> str:
+    """Return bytes as DuckDB writes them: `ab\\x00`."""
+    return "".join(chr(each) if 31 < each < 127 and each not in b"\"'\\" else f"\\x{each:02X}" for each in value)
 
 
 def line_of(value: Any) -> Any:
     """Return a value for a cell: nested ones as JSON."""
-    if hasattr(value, "nanoseconds"):
-        return _interval(value)
-    return orjson.dumps(plain(value)).decode() if isinstance(value, list | dict) else value
+    if isinstance(value, bytes):
+        return _bytes(value)
+    return orjson.dumps(plain(value)).decode() if isinstance(value, list | dict | tuple) else value
 
 
 def distinct(columns: list[str]) -> list[str]:
@@ -85,18 +86,10 @@ def write_separated(
 
 def _each(column: Any, form: Callable[[Any], Any]) -> Any:
     """Return the values of a column in a form; what every form leaves as it is, is not looked at one by one."""
-    kind = column.type
-    try:
-        values = column.to_pylist()
-    except (OverflowError, ValueError):  # a date that Python has none for
-        values = _days(column) if kinds.is_date32(kind) else [str(each) for each in column]
-    kept = kinds.is_signed_integer(kind) or kinds.is_floating(kind) or kinds.is_boolean(kind) or kinds.is_string(kind)
+    kind, values = column.type, column.to_pylist()
+    kept = kinds.is_signed_integer(kind) or kinds.is_boolean(kind) or kinds.is_string(kind)
+    kept = kept or (kinds.is_floating(kind) and pc.all(pc.is_finite(column)).as_py() is not False)
     return values if kept else map(form, values)
-
-
-def _days(column: Any) -> list[str | None]:
-    """Return days as text, those after the year 9999 too."""
-    return [None if day is None else str(np.datetime64(day, "D")) for day in column.cast(pa.int32()).to_pylist()]
 
 
 def _records(columns: list[str], batch: Any) -> list[dict[str, Any]]:
@@ -143,7 +136,7 @@ def _json(dataset: Dataset, query: str, path: Path) -> int:
 
 
 def _parquet(dataset: Dataset, query: str, path: Path) -> int:
-    reader = without_zones(dataset.sql(query)).to_arrow_reader(ROWS_OF_AN_ANSWER)
+    reader = exactly(dataset.sql(query), FILE).to_arrow_reader(ROWS_OF_AN_ANSWER)
     number = 0
     with pq.ParquetWriter(path, reader.schema) as file:
         for batch in reader:
@@ -182,5 +175,6 @@ def write_answer(dataset: Dataset, query: str, path: Path, form: str = "") -> in
     if path.is_dir() or not path.absolute().parent.is_dir():
         remedy = "name a file in a folder that there is"
         raise HearthError.of(Code.UNWRITABLE, "no file can be written there", file=str(path), suggestion=remedy)
+    check_outside(path, dataset.folder)
     with using(dataset.folder), replacing(path) as temporary:
         return WRITERS[form](dataset, query, temporary)

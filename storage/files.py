@@ -66,6 +66,14 @@ def write_bytes(path: Path, data: bytes) -> None:
         temporary.write_bytes(data)
 
 
+def rewrite(path: Path, data: bytes) -> None:
+    """Write a file of the user's again, whole or not at all: a link stays one, and the file keeps who may read it."""
+    path = path.resolve()
+    with replacing(path) as temporary:
+        temporary.write_bytes(data)
+        temporary.chmod(path.stat().st_mode & 0o7777)
+
+
 def write_json(path: Path, value: Any) -> None:
     """Write JSON that people can read, keys in the order given."""
     write_bytes(path, shown_line(orjson.dumps(value, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE)))

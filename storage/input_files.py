@@ -93,6 +93,9 @@ def _opened(path: Path) -> Iterator[BinaryIO]:
             raise HearthError.of(Code.UNSUPPORTED_FILE, what, file=str(path), suggestion="name a file")
         with os.fdopen(descriptor, "rb", closefd=False) as file:
             yield file
+    except OSError as error:  # of the disk, or of a file that the system makes up, such as a process's memory
+        reason = f"it can't be read: {(error.strerror or str(error)).lower()}"
+        raise HearthError.of(Code.UNSUPPORTED_FILE, reason, file=str(path)) from error
     finally:
         os.close(descriptor)
 

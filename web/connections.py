@@ -28,6 +28,9 @@ KERNEL_QUEUE = 64
 """Connections that the kernel keeps until they are accepted."""
 
 _HEAD_ENDS = re.compile(rb"\n\r?\n")
+_LOOSE = re.compile(rb"(?<!\r)\n|\n[ \t]|\r(?!\n)")
+"""Ends of lines that h11 takes and other servers do not, or the other way round; headers that go on in a next line."""
+
 _LENGTHS = re.compile(rb"(?im)^(content-length|transfer-encoding)[ \t]*:([^\r\n]*)")
 
 
@@ -67,8 +70,12 @@ class Connection(H11Protocol):
         super().connection_lost(exc)
 
     def handle_events(self) -> None:
-        """Read what came; refuse a request that says in two ways how long its body is."""
-        if self.conn.their_state is h11.IDLE and _is_ambiguous(self.conn.trailing_data[0]):
+        """Read what came; refuse a request of which a proxy may see another end, or other headers."""
+        head = self.conn.trailing_data[0] if self.conn.their_state is h11.IDLE else b""
+        if _LOOSE.search(_head(head)):
+            self.send_400_response("Lines of a head end in CRLF, and no header goes on in the next line.")
+            return
+        if _is_ambiguous(head):
             self.send_400_response("Exactly one of Content-Length and Transfer-Encoding.")
             return
         super().handle_events()
@@ -132,12 +139,15 @@ class Connection(H11Protocol):
         return True
 
 
+def _head(data: bytes) -> bytes:
+    """Return the lines of a request's head, as far as the empty line after them; nothing before it has come whole."""
+    end = _HEAD_ENDS.search(data)
+    return data[: end.end()] if end else b""
+
+
 def _is_ambiguous(head: bytes) -> bool:
     """Return whether a request's head has two lengths, or chunks in a version of HTTP that has none."""
-    end = _HEAD_ENDS.search(head)
-    if end is None:
-        return False
-    lines = head[: end.start() + 1]
+    lines = _head(head)
     found = _LENGTHS.findall(lines)
     old = lines.partition(b"\n")[0].rstrip().endswith(b"HTTP/1.0")
     return len(found) > 1 or any(b"," in value or (old and name[:1] in b"tT") for name, value in found)

@@ -14,6 +14,7 @@ from hearth.datasets.export.program_batches import Wanted
 from hearth.datasets.export.python_code import code
 from hearth.datasets.export.rdf import rdf
 from hearth.datasets.export.release_layout import release
+from hearth.datasets.places_outside import check_outside
 from hearth.datasets.unpacked_sizes import check_unpacked
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -57,6 +58,7 @@ def export(dataset: Dataset, form: str, to: Path, wanted: Wanted | None = None) 
     missing = [name for name in wanted.programs if name not in dataset]
     if missing:
         raise HearthError.of(Code.UNKNOWN_ID, f"no program `{missing[0]}` in this dataset", file=str(dataset.folder))
+    check_outside(to, dataset.folder)
     if to.exists() and (not to.is_dir() or any(to.iterdir())):
         message, remedy = "there is something already", "name a new or empty folder"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)

@@ -213,16 +213,3 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
         remedy = "fetch the dataset again, or publish it again with this version"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
     return missing
-
-
-def without_zones(relation: Any) -> Any:
-    """Return a relation whose times in a zone are text.
-
-    DuckDB gives them to Python by a library that is not needed else.
-    """
-    zoned = ["WITH TIME ZONE" in str(kind) for kind in relation.types]
-    if not any(zoned):
-        return relation
-    names = ['"' + name.replace('"', '""') + '"' for name in relation.columns]
-    cells = (f"CAST(#{n} AS VARCHAR)" if is_zoned else f"#{n}" for n, is_zoned in enumerate(zoned, 1))
-    return relation.project(", ".join(f"{cell} AS {name}" for cell, name in zip(cells, names, strict=True)))

@@ -12,6 +12,7 @@ import orjson
 from hearth.datasets.damage_faults import using
 from hearth.datasets.dataset import OWN, Dataset
 from hearth.datasets.format.datasheet import STRENGTH, datasheet
+from hearth.datasets.places_outside import check_outside
 from hearth.datasets.report.copied_pictures import copy_pictures, pictured
 from hearth.datasets.report.floor_plan_svg import plans
 from hearth.datasets.report.program_pages import DRAWN, Stories
@@ -55,6 +56,7 @@ def write_report(dataset: Dataset, to: Path, workers: int = 1, seen: Seen = unse
     """
     with using(dataset.folder):
         check_unpacked(dataset)
+    check_outside(to, dataset.folder)
     if to.exists() and (not to.is_dir() or (any(to.iterdir()) and not (to / "index.html").exists())):
         message, remedy = "there is something else already", "name a new or empty folder, or an earlier report"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(to), suggestion=remedy)

@@ -49,6 +49,7 @@ from hearth.storage.archives import (
     size_of,
 )
 from hearth.storage.files import SERVED, links_not_followed, walk
+from hearth.storage.input_files import read_start
 from hearth.storage.rejects import Reject, as_text
 
 _MAGIC: dict[bytes, str] = {
@@ -175,8 +176,7 @@ def _named_file(path: Path, label: str) -> Iterator[Recognised]:
 
 
 def _file(path: Path, place: str) -> Iterator[Recognised]:
-    with path.open("rb") as file:
-        start = file.read(8)
+    start = read_start(path, 8)
     if start.startswith(b"PK"):
         yield from _archive(path, place)
         return

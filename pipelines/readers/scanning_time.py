@@ -9,6 +9,7 @@ from hearth.pipelines.engine.record_deadline import Deadline, OverTime
 from hearth.pipelines.readers.reader_items import Item, refused
 from hearth.schemas.failures import Code
 from hearth.storage.archives import GZIP, ZSTD, Member, Place
+from hearth.storage.input_files import read_start
 from hearth.storage.rejects import Reject
 
 SECONDS = 60.0
@@ -73,5 +74,4 @@ def _packed(path: Place) -> Path | None:
         return path.archive
     if not path.is_file():
         return None
-    with path.open("rb") as file:
-        return path if file.read(4).startswith((GZIP, ZSTD, b"PK")) else None
+    return path if read_start(path, 4).startswith((GZIP, ZSTD, b"PK")) else None

@@ -216,9 +216,10 @@ def test_joiners_of_writing_and_pictures_stay(dataset):
     assert text in run(dataset, f"SELECT '{text}' AS w").stdout
 
 
-def test_values_without_a_form_are_refused_without_a_trace(dataset):
-    result = run(dataset, "FROM test_all_types()")
-    assert result.exit_code == 1 and "BAD_ARGUMENT" in result.output and "Traceback" not in result.output
+def test_values_of_all_types_are_printed_in_every_form(dataset):
+    for form in ((), ("--csv",), ("--json",)):
+        result = run(dataset, "FROM test_all_types()", *form)
+        assert result.exit_code == 0 and "infinity" in result.output, form
 
 
 def test_the_bound_on_memory_ends_with_the_command(dataset):

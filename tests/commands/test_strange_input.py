@@ -23,6 +23,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import from_release
 from hearth.schemas.numbers import number_of, stored
+from hearth.storage.lock import locked
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -281,6 +282,9 @@ def test_a_build_that_is_asked_to_end_says_what_to_do(tmp_path, number, status):
     _, err = build.communicate(timeout=60)
     assert build.returncode == status
     assert "the same command" in err and "Traceback" not in err
+    assert (tmp_path / "out/.lock").read_text() == f"{build.pid}\n"
+    with locked(tmp_path / "out"):  # the number of a process that has ended keeps nobody out
+        pass
 
 
 def test_a_question_to_a_damaged_table_names_the_damage(copy):

@@ -180,6 +180,37 @@ def test_chunks_of_old_http_are_refused(served):
     assert asked(served.address, request) == 400
 
 
+LOOSE = (
+    b"POST /begin HTTP/1.1\r\n" + HOST + FORM + b"Transfer-Encoding:\r\n chunked\r\n\r\n0\r\n\r\n",
+    b"POST /begin HTTP/1.1\r\n" + HOST + FORM + b"Content-Length:\r\n\t3\r\n\r\na=1",
+    b"GET / HTTP/1.1\r\n" + HOST + b"X: a\r\n b\r\n\r\n",
+    b"GET / HTTP/1.1\n" + HOST + b"\r\n",
+    b"GET / HTTP/1.1\r\nHost: 127.0.0.1\n\r\n",
+    b"GET / HTTP/1.1\r\nHost: 127.0.0.1\n\n",
+    b"GET / HTTP/1.1\r\n" + HOST + b"X: a\rY: b\r\n\r\n",
+    b"GET /static/style.css HTTP/1.1\r\n" + HOST + b"\r\n" + b"GET / HTTP/1.1\n" + HOST + b"\r\n",
+)
+
+
+@pytest.mark.parametrize("request_", LOOSE)
+def test_a_head_that_others_read_otherwise_is_refused(served, request_):
+    connection = connected(served.address)
+    connection.sendall(request_)
+    answer = b""
+    while piece := connection.recv(65_536):
+        answer += piece
+    assert b"HTTP/1.1 400" in answer and b"HTTP/1.1 303" not in answer
+
+
+def test_a_head_that_comes_in_two_pieces_is_read_as_one(served):
+    for last, status in ((b"\r\n\r\n", b"200"), (b"\r\n y\r\n\r\n", b"400")):
+        connection = connected(served.address)
+        connection.sendall(b"GET /static/style.css HTTP/1.1\r\n" + HOST + b"X: a")
+        time.sleep(0.2)
+        connection.sendall(last)
+        assert connection.recv(65_536).startswith(b"HTTP/1.1 " + status)
+
+
 FORGED = ("X-Forwarded-For", "X-Real-IP", "Forwarded")
 
 

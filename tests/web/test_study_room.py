@@ -13,8 +13,10 @@ import pyarrow.parquet as pq
 import pytest
 import sqlalchemy as sql
 from studies.small import SMALL
+from typer.testing import CliRunner
 from web.people import Server
 
+from hearth import cli
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.storage.files import write_json
@@ -328,6 +330,16 @@ def test_a_study_that_has_begun_does_not_change(judging, tmp_path):
     (tmp_path / "study.yaml").write_text(JUDGE.replace("seed: 1", "seed: 2"))
     answer = judging.person().get("/study/", headers={"accept": "text/html"})
     assert answer.status_code == 400 and "began with another file" in answer.text
+
+
+def test_a_server_does_not_start_with_a_study_that_began_otherwise(judging, tmp_path, monkeypatch):
+    monkeypatch.setattr("hearth.web.serving.run", lambda *given: None)
+    judging.person().post("/study/agree", data={"agree": "yes"})
+    (tmp_path / "study.yaml").write_text(JUDGE.replace("seed: 1", "seed: 2"))
+    result = CliRunner().invoke(
+        cli.app, ["serve", "--study", str(tmp_path / "study.yaml"), "--out", str(judging.out), "--port", "0"]
+    )
+    assert result.exit_code == 1 and "began with another file" in result.output, result.output
 
 
 def test_two_who_join_at_once_get_two_places(judging):

@@ -104,18 +104,27 @@ def conducted(store: Store, study: Study, known: Callable[[], Knowledge]) -> Con
     Raises:
         HearthError: CONTRADICTION: it has begun with another file.
     """
-    query = sql.select(STUDIES.c.text).where(STUDIES.c.name == study.name)
-    begun = store.read(lambda connection: connection.execute(query).scalar())
-    if begun is None:
+    if not has_begun(store, study):
         row = {"name": study.name, "text": study.text, "salt": secrets.token_hex(16)}
         try:
             store.write(lambda connection: connection.execute(sql.insert(STUDIES).values(row)))
         except IntegrityError:  # another server began it
             return conducted(store, study, known)
-    elif begun != study.text:
+    return Conduct(study, StoreLedger(store, study.name), known)
+
+
+def has_begun(store: Store, study: Study) -> bool:
+    """Return whether a study has begun in the store, with this very file.
+
+    Raises:
+        HearthError: CONTRADICTION: it has begun with another file.
+    """
+    query = sql.select(STUDIES.c.text).where(STUDIES.c.name == study.name)
+    begun = store.read(lambda connection: connection.execute(query).scalar())
+    if begun not in (None, study.text):
         message = f"the study `{study.name}` began with another file, and people take part in it"
         raise HearthError.of(Code.CONTRADICTION, message, suggestion="give the changed study another name")
-    return Conduct(study, StoreLedger(store, study.name), known)
+    return begun is not None
 
 
 def names_in(source: Path, url: str = "") -> list[str]:
