@@ -14,7 +14,8 @@ from typing import Any, Protocol
 from hearth.agents.protocol import Choice
 from hearth.envs.agent_answers import SAYING, Fault, by_words
 from hearth.envs.answer_forms import WALK, command_line, read_answer
-from hearth.envs.compact_text import compact, printable, wanted_nodes
+from hearth.envs.compact_text import compact, wanted_nodes
+from hearth.envs.text_layout import printable
 from hearth.envs.text_protocol_settings import Protocol as Words
 from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import reason
