@@ -28,6 +28,7 @@ from hearth.simulation.arrays.kernels.set_words import (
     WORN,
     bit,
     has,
+    hypot,
     kernel,
     lowest,
     put,
@@ -201,7 +202,7 @@ def rise(home, task, world, agent):
             nearest = np.inf
             for k in range(home.first_stand[key], home.first_stand[key + 1]):
                 cell = home.stands[k]
-                far = math.hypot(home.middle[cell, 0] - x, home.middle[cell, 1] - z)
+                far = hypot(home.middle[cell, 0] - x, home.middle[cell, 1] - z)
                 if far < nearest:
                     nearest = far
                     world.pose[agent, 0], world.pose[agent, 1] = home.middle[cell, 0], home.middle[cell, 1]

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from hearth.simulation.arrays.kernels.places import holder, room_of, standing
-from hearth.simulation.arrays.kernels.set_words import DOORS, ELSEWHERE, NONE, bit, has, kernel, lowest
+from hearth.simulation.arrays.kernels.set_words import DOORS, ELSEWHERE, NONE, bit, has, hypot, kernel, lowest
 
 
 @kernel
@@ -89,7 +89,7 @@ def target_of(home, task, world, node):
         if cell < 0:
             nearest = np.inf
             for number in range(home.cells):
-                far = math.hypot(home.middle[number, 0] - x, home.middle[number, 1] - z)
+                far = hypot(home.middle[number, 0] - x, home.middle[number, 1] - z)
                 if home.main[number] and far < nearest:
                     nearest, cell = far, np.int64(number)
         return home.first_stand.shape[0] - 1 + cell, np.int64(-1)
@@ -126,7 +126,7 @@ def stepped(home, distance, following, only, key, place, doors, pose, stride, ce
     for number in range(cells_around(home, x, z, cells)):
         each = cells[number]
         if (only < 0 or each == only) and leads(home, key, place, doors, each):
-            total = math.hypot(x - home.middle[each, 0], z - home.middle[each, 1]) + distance[each]
+            total = hypot(x - home.middle[each, 0], z - home.middle[each, 1]) + distance[each]
             if total < best:
                 best, cell = total, each
     if cell < 0:
@@ -139,7 +139,7 @@ def stepped(home, distance, following, only, key, place, doors, pose, stride, ce
         if cell < 0:
             return here_x, here_z, np.int64(-1)
     there_x, there_z = home.middle[cell, 0], home.middle[cell, 1]
-    length = math.hypot(here_x - there_x, here_z - there_z)
+    length = hypot(here_x - there_x, here_z - there_z)
     share = (rest - distance[cell]) / length if length else 0.0
     if share < 1e-9 and following[cell] < 0:
         return there_x, there_z, np.int64(-1)
@@ -152,7 +152,7 @@ def ahead(home, pose, stride, doors):
     angle = pose[2] * (math.pi / 180.0)
     step_x, step_z = math.sin(angle) * stride, math.cos(angle) * stride
     size = home.origin[2]
-    parts = max(1, int(math.ceil(math.hypot(step_x, step_z) / (size / 2))))
+    parts = max(1, int(math.ceil(hypot(step_x, step_z) / (size / 2))))
     x, z = (pose[0] - home.origin[0]) / size + 1, (pose[1] - home.origin[1]) / size + 1
     dx, dz = step_x / size / parts, step_z / size / parts
     for part in range(1, parts + 1):

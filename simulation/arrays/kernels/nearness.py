@@ -6,8 +6,6 @@ the agent walks.
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from hearth.homes.plans.floor import REACH
@@ -26,6 +24,7 @@ from hearth.simulation.arrays.kernels.set_words import (
     WORN,
     bit,
     has,
+    hypot,
     kernel,
     lowest,
     put,
@@ -134,7 +133,7 @@ def near_point(home, task, world, agent, x, z, out):
                     take(out, np.int64(world.hands[other, hand]))
     for other in range(task.agents):
         if other != agent and room >= 0 and world.room[other] == room:
-            if math.hypot(world.pose[other, 0] - x, world.pose[other, 1] - z) <= MEETING:
+            if hypot(world.pose[other, 0] - x, world.pose[other, 1] - z) <= MEETING:
                 put(out, np.int64(task.agent[other]))
     return room
 

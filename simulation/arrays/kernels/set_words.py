@@ -7,6 +7,7 @@ folder if that is not writable. They release the interpreter's lock.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from hashlib import blake2b
 from pathlib import Path
@@ -78,6 +79,9 @@ CLOSE, FACING, SEATS, WORN, CONTENTS = range(5)
 ON, INSIDE, ROOM, NEXT_TO = range(4)
 """The places of a lifted thing in a world: what it is ON, what it is in, its room, what it is CLOSE to."""
 
+SPLIT = 134217729.0
+"""2**27 + 1, which splits a float into two halves (Veltkamp)."""
+
 ONE = np.uint64(1)
 NONE = np.uint64(0)
 ALL = ~np.uint64(0)
@@ -110,3 +114,29 @@ def put(row, node):
 def take(row, node):
     """Take a node out of a set."""
     row[node >> 6] &= ~bit(node)
+
+
+@kernel
+def hypot(x, z):
+    """Return `math.hypot` as Python rounds it; that of C differs in the last bit, which can change a count of parts."""
+    c = SPLIT * x
+    x_high = c - (c - x)
+    c = SPLIT * z
+    z_high = c - (c - z)
+    x_low, z_low = x - x_high, z - z_high
+    a, b = x * x, z * z
+    a_rest = ((x_high * x_high - a) + 2 * x_high * x_low) + x_low * x_low
+    b_rest = ((z_high * z_high - b) + 2 * z_high * z_low) + z_low * z_low
+    if a < b:
+        a, a_rest, b, b_rest = b, b_rest, a, a_rest
+    total = a + b
+    rest = (a - total) + b + a_rest + b_rest
+    root = math.sqrt(total + rest)
+    if root == 0.0:
+        return root
+    c = SPLIT * root
+    high = c - (c - root)
+    low = root - high
+    square = root * root
+    square_rest = ((high * high - square) + 2 * high * low) + low * low
+    return root + ((total - square) - square_rest + rest) / (2 * root)
