@@ -3,8 +3,8 @@
     python benchmarks/array_exactness.py                               1,000 episodes of 250 ticks, half an hour
     python benchmarks/array_exactness.py --episodes 60 --ticks 100     a minute
 
-Homes are our seven and three generated ones; a third of the episodes each is of `wah` with one agent, of `wah` with two
-agents and of `owah` with two agents, where the home is ours, and of an open goal where it is generated. After each tick
+Homes are our seven and three generated ones. Five kinds of episodes come in turn: `wah` with one agent and with two, `owah`
+with two, and an open goal in a generated home with one agent and with two. After each tick
 states, edges, agents, poses, goal counts, rewards, ends, sight and legal numbers are compared. Exits with 1 where
 anything differs.
 """
@@ -72,7 +72,7 @@ def _generated(rooms: int, seed: int, made: dict[tuple[int, int], Home] = {}) ->
 
 
 def batches(episodes: int) -> Iterator[tuple[str, Batch]]:
-    """Yield batches of all kinds until there were so many episodes."""
+    """Yield batches of all kinds until they have that number of episodes."""
     played = sorted(default().group("played"))
     kinds = (("wah", 1), ("owah", 2), ("generated", 1), ("wah", 2), ("generated", 2))
     for number, first in enumerate(range(0, episodes, AT_ONCE)):

@@ -1,7 +1,7 @@
 """Thousands of worlds as arrays, in figures: steps a second, memory, the first call; and Gymnasium's own wrappers.
 
     python benchmarks/array_homes.py                    the tables below, some five minutes
-    python benchmarks/array_homes.py --most 1024        up to so many worlds
+    python benchmarks/array_homes.py --most 1024        up to that number of worlds
 
 Random legal actions; choosing them is not timed, nor are distance fields, which the first steps compute. Rates are
 steps of an agent per second of wall clock, and in brackets per second of the processor, which other jobs disturb less.

@@ -6,16 +6,12 @@ from collections.abc import Iterator, Sequence
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.program_writing import GRABS, OPENS, WAITS
+from hearth.models.reading.request_table import acts_of
 from hearth.models.reading.spoken_things import Act
 from hearth.schemas.program import ObjectRef, Step
 
-WALKS, FINDS = "Walk", "Find"
-_HELD = frozenset(
-    {"PutIn", "PutBack", "PutOn", "Pour", "Read", "Drink", "Eat", "Cover", "Wrap", "Drop", "Throw", "Shake"}
-)
-"""Acts of which the first thing is in a hand."""
-
-_RELEASED = frozenset({"PutIn", "PutBack", "PutOn", "Drop", "Throw", "Cover", "Wrap"})
+WALKS = "Walk"
+FINDS = "Find"
 
 
 def narrated(acts: Sequence[Act], known: Knowledge) -> tuple[Step, ...]:
@@ -50,7 +46,7 @@ class _Narrator:
 
     def _act(self, act: Act) -> Iterator[Step]:
         for place, ref in enumerate(act.objects):
-            is_taken = act.action in _HELD and place == 0 and self.known.has(ref.name, "GRABBABLE")
+            is_taken = act.action in acts_of("held") and place == 0 and self.known.has(ref.name, "GRABBABLE")
             if ref.key not in self.held and act.action not in (WALKS, FINDS):
                 yield from self._reached(ref)
             if is_taken and ref.key not in self.held:
@@ -63,7 +59,7 @@ class _Narrator:
         first = act.objects[0].key if act.objects else None
         if act.action == GRABS and first:
             self.held.add(first)
-        elif act.action in _RELEASED and first:
+        elif act.action in acts_of("released") and first:
             self.held.discard(first)
         elif act.action == OPENS and first:
             self.opened.add(first)

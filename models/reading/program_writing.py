@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hearth.models.interface import Steps
 from hearth.models.reading.instruction_reading import Reading
+from hearth.models.reading.request_table import acts_of
 from hearth.models.reading.spoken_things import Act
 from hearth.repair.runnable_predictions import Completion, complete
 from hearth.schemas.failures import Code, Failure
@@ -19,12 +20,10 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.states import CLOSED, OPEN
 from hearth.simulation.world.world import World
 
-OPENS, CLOSES, WAITS, GRABS = "Open", "Close", "Wait", "Grab"
-KEEPS = frozenset(
-    {"Read", "LookAt", "Wash", "Rinse", "Wipe", "Scrub", "Touch", "Drink", "SwitchOn", "SwitchOff", "Cut", "Write"}
-)
-"""Acts after which a held thing is still held."""
-
+OPENS = "Open"
+CLOSES = "Close"
+WAITS = "Wait"
+GRABS = "Grab"
 HANDS = 2
 PUTS = "PutBack"
 PUT_DOWN = ("kitchen_counter", "dining_table", "kitchen_table", "table", "coffee_table", "desk")
@@ -149,7 +148,7 @@ def _in_hands(acts: Sequence[Act]) -> Iterator[Act]:
             if len(held) >= HANDS and any(nodes[:1] == _nodes(each.objects)[:1] for each in acts[at + 1 :]):
                 continue
             held += [nodes[0]]
-        elif act.action not in KEEPS and nodes:
+        elif act.action not in acts_of("kept") and nodes:
             held = [node for node in held if node != nodes[0]]
         yield act
 

@@ -164,6 +164,12 @@ def words() -> Words:
     )
 
 
+@cache
+def acts_of(kind: str) -> frozenset[str]:
+    """Return the names of the acts of a kind: `held`, `released` or `kept`."""
+    return frozenset(_word_data()[kind])
+
+
 def number_in(text: str) -> int:
     """Return the number that a word says; 0 where it says none."""
     return NUMBERS.get(text, 0) or (int(text) if text.isascii() and text.isdigit() and len(text) < 3 else 0)

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
-from hearth.simulation.arrays.action_table import FIRST_NODE_NUMBER, ActionTable, action_table
 from hearth.simulation.arrays.distance_pool import DistancePool
 from hearth.simulation.arrays.home_records import HomeShape, bucket_of, home_record
+from hearth.simulation.arrays.instruction_table import FIRST_NODE_NUMBER, ActionTable, action_table
 from hearth.simulation.arrays.kernels.observations import AGENT_COLUMNS
-from hearth.simulation.arrays.kernels.sampling import random_legal
+from hearth.simulation.arrays.kernels.random_instructions import random_legal
 from hearth.simulation.arrays.kernels.tick import (
     ARRAYS,
     LOOK,

@@ -105,7 +105,7 @@ def _set(name: str, home: Home, shape: HomeShape) -> int:
         return home.able(action, int(position))
     if kind == "property":
         return home.properties[rest]
-    if name == "elsewhere":
+    if name == "off_the_floor":
         here = ground_of(home)
         assert here is not None
         return here.elsewhere

@@ -12,7 +12,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 TABLES = (
-    "simulation/arrays/action_table.py",
+    "simulation/arrays/instruction_table.py",
     "simulation/actions/",
     "simulation/motion/moves.py",
     "rendering/people/gestures.py",

@@ -23,10 +23,10 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.simulation.actions.common import Action, Becomes, checked, close, unchanged
 from hearth.simulation.actions.registry import EVERY
-from hearth.simulation.arrays.action_table import BECOMES, EFFECT, KERNELS, action_table
 from hearth.simulation.arrays.batch import Batch, Payment
 from hearth.simulation.arrays.distance_pool import DistancePool
 from hearth.simulation.arrays.home_records import HomeShape, bucket_of
+from hearth.simulation.arrays.instruction_table import BECOMES, EFFECT, KERNELS, action_table
 from hearth.simulation.arrays.record_types import BUCKETS
 from hearth.simulation.arrays.task_records import Begin
 from hearth.simulation.rules import DEFAULT, REPLAY

@@ -9,8 +9,8 @@ import math
 
 import numpy as np
 
-from hearth.simulation.arrays.action_table import PUT_ON
-from hearth.simulation.arrays.kernels.floor import ahead, destination, stepped, target_of, turned_to
+from hearth.simulation.arrays.instruction_table import PUT_ON
+from hearth.simulation.arrays.kernels.floor_moves import ahead, destination, stepped, target_of, turned_to
 from hearth.simulation.arrays.kernels.nearness import add_arrival, fresh_row, near_point
 from hearth.simulation.arrays.kernels.places import agent_of, container, spot, support
 from hearth.simulation.arrays.kernels.set_words import (

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hearth.simulation.arrays.action_table import (
+from hearth.simulation.arrays.instruction_table import (
     FIRST,
     HAND,
     HELD,
@@ -17,7 +17,7 @@ from hearth.simulation.arrays.action_table import (
     PLANE,
     RESULT,
 )
-from hearth.simulation.arrays.kernels.floor import (
+from hearth.simulation.arrays.kernels.floor_moves import (
     ahead,
     cells_around,
     closed_doors,

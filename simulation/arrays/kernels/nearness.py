@@ -1,7 +1,7 @@
 """The nodes that an agent is close to, and those that it comes close to where it walks.
 
-They read as `observation.reach` and `motion.positions` do. CLOSE is no distance: an agent's row stays as it is until
-the agent walks.
+They read as `observation.reach` and `motion.positions` do. CLOSE differs from distance: an agent's row stays as it is
+until the agent walks.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from hearth.homes.plans.floor import REACH
-from hearth.simulation.arrays.kernels.floor import cell_at
+from hearth.simulation.arrays.kernels.floor_moves import cell_at
 from hearth.simulation.arrays.kernels.places import agent_of, container, displaced
 from hearth.simulation.arrays.kernels.set_words import (
     CLOSE,

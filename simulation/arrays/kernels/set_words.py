@@ -48,7 +48,7 @@ def entry(function: F) -> F:
 def sources() -> int:
     """Return a digest of all that compiled kernels depend on, for the key of their cache."""
     here = Path(__file__).parent
-    files = [*sorted(here.glob("*.py")), here.parent / "action_table.py", here.parent / "mask_tracing.py"]
+    files = [*sorted(here.glob("*.py")), here.parent / "instruction_table.py", here.parent / "mask_tracing.py"]
     text = b"".join(file.read_bytes() for file in files) + repr((REACH, BODY_RADIUS)).encode()
     return int.from_bytes(blake2b(text, digest_size=7).digest(), "little")
 
@@ -89,7 +89,7 @@ ALL = ~np.uint64(0)
 EVERYTHING, ROOMS, DOORS, FURNITURE, BEDDING, LIEABLE, SURFACES, ELSEWHERE, HOLDERS, CARRIERS, RESTS, LEFT, MOVABLE = (
     range(13)
 )
-"""Places of `action_table.KNOWN_SETS` in a task."""
+"""Places of `instruction_table.KNOWN_SETS` in a task."""
 
 
 @kernel

@@ -26,7 +26,7 @@ from hearth.simulation.arrays.kernels.set_words import (
 
 @kernel
 def hidden(home, task, world, keep, out):
-    """Write the things directly in something closed that is no room, as far as `keep` shows that it is closed."""
+    """Write the things directly in something closed other than a room, as far as `keep` shows that it is closed."""
     words = world.lifted.shape[0]
     base = home.contents.shape[0]
     for w in range(words):
@@ -168,7 +168,7 @@ def visible(home, task, world, agent, out, inner, scratch):
 
 @kernel
 def hidden_one(home, task, world, node):
-    """Return whether a node is directly in something closed that is no room."""
+    """Return whether a node is directly in something closed other than a room."""
     if agent_of(task, world, node) >= 0:
         return False
     if has(world.lifted, node):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hearth.simulation.arrays.action_table import (
+from hearth.simulation.arrays.instruction_table import (
     ARGUMENT,
     BECOMES,
     EFFECT,
@@ -33,7 +33,7 @@ from hearth.simulation.arrays.kernels.effects import (
     stride_ahead,
     stride_towards,
 )
-from hearth.simulation.arrays.kernels.floor import cell_at, closed_doors, target_of
+from hearth.simulation.arrays.kernels.floor_moves import cell_at, closed_doors, target_of
 from hearth.simulation.arrays.kernels.goals import count_goal
 from hearth.simulation.arrays.kernels.masks import allowed, fill_all, legal
 from hearth.simulation.arrays.kernels.observations import observe

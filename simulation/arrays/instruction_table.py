@@ -27,7 +27,7 @@ FIRST_NODE_NUMBER = 64
 """The first number that is about a node; those below it are for actions without objects."""
 
 KNOWN_SETS = (
-    "everything", "rooms", "doors", "furniture", "bedding", "property_LIEABLE", "property_SURFACES", "elsewhere",
+    "everything", "rooms", "doors", "furniture", "bedding", "property_LIEABLE", "property_SURFACES", "off_the_floor",
     "holders", "carriers", "rests", "seats", "movable",
 )  # fmt: skip
 """Sets of a task that kernels read by their place here; those that masks read follow."""
@@ -105,7 +105,7 @@ class ActionTable:
         return len(self.of_row) - self.planes
 
     def size(self, nodes: int) -> int:
-        """Return how many numbers there are where sets have room for so many nodes."""
+        """Return the number of instruction numbers where sets have room for a number of nodes."""
         return FIRST_NODE_NUMBER + self.planes * nodes
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from hearth.simulation.arrays.action_table import FIRST_NODE_NUMBER
+from hearth.simulation.arrays.instruction_table import FIRST_NODE_NUMBER
 from hearth.simulation.arrays.kernels.set_words import count, entry, kernel, lowest, sources
 
 
