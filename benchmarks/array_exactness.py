@@ -3,8 +3,8 @@
     python benchmarks/array_exactness.py                               1,000 episodes of 250 ticks, half an hour
     python benchmarks/array_exactness.py --episodes 60 --ticks 100     a minute
 
-Homes are our seven and three generated ones. Five kinds of episodes come in turn: `wah` with one agent and with two, `owah`
-with two, and an open goal in a generated home with one agent and with two. After each tick
+Homes are our seven and three generated ones. Five kinds of episodes come in turn: `wah` with one agent and with two,
+`owah` with two, and an open goal in a generated home with one agent and with two. After each tick
 states, edges, agents, poses, goal counts, rewards, ends, sight and legal numbers are compared. Exits with 1 where
 anything differs.
 """
