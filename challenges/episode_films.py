@@ -17,8 +17,6 @@ def execution_of(start: World, ticks: Sequence[Tick], title: str = "", rules: Ru
 
     Ticks in which no agent succeeded are left out: the world is the same after them.
 
-    Ticks in which nobody did anything, or nobody could, are left out: the world is the same after them.
-
     Args:
         start: the world at its start.
         ticks: all of them.

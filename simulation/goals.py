@@ -34,7 +34,7 @@ LiteralFault = tuple[str, Code, str]
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """A literal of a goal: the nodes that can make it hold, and those that do now (see `holds.Candidates`)."""
+    """A literal of a goal: the nodes that can make it hold, and those that do now (see `literal_truth.Candidates`)."""
 
     literal: Literal[Name]
     wanted: int
