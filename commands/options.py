@@ -35,7 +35,7 @@ def described(command: Callable[..., Any]) -> Callable[..., Any]:
         entry = own.get(f"{command.__name__}.{name}") or own.get(name) or shared.get(name)
         if entry is None or get_origin(parameter.annotation) is Annotated:
             return parameter
-        if parameter.annotation is float:
+        if parameter.annotation in (float, float | None):
             entry = {"callback": _finite, **entry}
         return parameter.replace(annotation=Annotated[parameter.annotation, _parameter(**entry)])
 
@@ -78,12 +78,12 @@ def _processes(count: int) -> int:
     return count or os.cpu_count() or 1
 
 
-def _finite(number: float) -> float:
+def _finite(number: float | None) -> float | None:
     """Return a number that is one; `nan` passes every comparison with a least and a most.
 
     Raises:
         typer.BadParameter: it is none.
     """
-    if not math.isfinite(number):
+    if number is not None and not math.isfinite(number):
         raise typer.BadParameter(f"{number} is not a number that can be used here")
     return number

@@ -76,17 +76,7 @@ def program(
                  "home_changes": changes}  # fmt: skip
         output.emit({**facts, **made})
     else:
-        note = place.note(home)
-        output.line(note, end="\n" if note else "")
-        if changes:
-            output.line(f"The home was changed, so that the program runs: {'; '.join(changes)}.")
-        output.line(f"{made['pictures']} pictures of {file.name} in {out}; contact sheet: {made['sheet']}")
-        if "shows" in made:
-            output.line(_shown(made["shows"]))
-        for page in made.get("pages", ()):
-            output.line(f"Open {page} in a browser.")
-        if failure:
-            output.line(f"Stopped: {failure}")
+        _say(made, failure, changes, place.note(home), f"{made['pictures']} pictures of {file.name} in {out}")
     output.status(failure is not None, strict=True)
 
 
@@ -329,6 +319,20 @@ def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, 
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, in_program(trial, program, code=False))
     return trial.execution
+
+
+def _say(made: Mapping[str, Any], failure: str | None, changes: Sequence[str], note: str, pictures: str) -> None:
+    """Print what was pictured, what was changed in the home before, and why the program stopped."""
+    output.line(note, end="\n" if note else "")
+    if changes:
+        output.line(f"The home was changed, so that the program runs: {'; '.join(changes)}.")
+    output.line(f"{pictures}; contact sheet: {made['sheet']}")
+    if "shows" in made:
+        output.line(_shown(made["shows"]))
+    for page in made.get("pages", ()):
+        output.line(f"Open {page} in a browser.")
+    if failure:
+        output.line(f"Stopped: {failure}")
 
 
 def _changes(scene: EnvironmentGraph, home: str, execution: Execution, known: Knowledge) -> list[str]:

@@ -213,3 +213,10 @@ def absent_tables(folder: Path, content: dict[str, Any]) -> list[str]:
         remedy = "fetch the dataset again, or publish it again with this version"
         raise HearthError.of(Code.MISSING_FILE, message, file=str(folder), suggestion=remedy)
     return missing
+
+
+def without_zones(relation: Any) -> Any:
+    """Return a relation whose times in a zone are text, as 0.2 named it: see `exact_types.exactly`."""
+    from hearth.datasets.format.exact_types import exactly
+
+    return exactly(relation)

@@ -27,6 +27,7 @@ ENTRY_POINTS = {
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (
         "hearth:home", "hearth:load_graph", "hearth:Home.from_graph", "hearth:generate", "hearth.homes.lint:lint",
+        "hearth.interop.scene_graphs.reading:read_scene", "hearth.schemas.graph_json_schema:graph_schema",
     ),
     "Programs in a home": (
         "hearth:parse_program", "hearth:parse_steps", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit",
@@ -39,7 +40,7 @@ ENTRY_POINTS = {
     "Language models": ("hearth:Endpoint", "hearth:run_tasks", "hearth.simulation.actions.legal:Legal.grammar"),
     "Goals and checks": (
         "hearth.challenges.instruction_writer:instruction",
-        "hearth.challenges.instruction_reader:read_instruction",
+        "hearth.challenges.instruction_reader:read_instruction", "hearth.interop.alfred_goals:alfred_goal",
         "hearth:hazards",
         "hearth:holds",
         "hearth:Progress",

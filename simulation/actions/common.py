@@ -85,6 +85,10 @@ class Becomes:
         return World(world.home, with_state(world.states, self.state, 1 << o), world.agents, world.moved)
 
 
+becomes = Becomes
+"""The same, as 0.2 named it."""
+
+
 def unchanged(world: World, number: int, o: int, rules: Rules) -> World:
     """Return the same world: the effect of an action that changes nothing."""
     return world

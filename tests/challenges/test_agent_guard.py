@@ -190,7 +190,7 @@ def test_a_class_that_ends_the_process_before_an_episode_is_refused(tmp_path, na
     file = tmp_path / "own.py"
     file.write_text(OWN)
     with pytest.raises(HearthError) as found:
-        Lineup(f"{file}:{name}")._main(f"{file}:{name}", challenge("household"))
+        Lineup(f"{file}:{name}")._main(f"{file}:{name}", challenge("household"), str)
     assert found.value.diagnostics[0].code == Code.BAD_ARGUMENT
 
 

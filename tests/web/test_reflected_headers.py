@@ -73,7 +73,7 @@ def test_only_configured_hosts_are_answered(tmp_path, knowledge, host):
 
 
 def test_a_public_address_may_have_a_port(tmp_path, knowledge):
-    assert _hosts("https://homes.example:8443/x") == ("homes.example:8443",)
+    assert _hosts("https://homes.example:8443") == ("homes.example:8443",)
     assert _hosts("https://homes.example:443") == _hosts("https://homes.example") == ("homes.example",)
     made = Server(tmp_path / "served", knowledge, hosts=_hosts("https://homes.example:8443"))
     found = [made.client().get("/privacy", headers={"host": f"homes.example{port}"}) for port in (":8443", "", ":1")]
