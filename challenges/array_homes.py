@@ -100,7 +100,7 @@ def worlds_of(
 
 
 def begins_of(tasks: Iterable[Any], which: Challenge, knowledge: Knowledge, agents: int) -> Iterator[Begin]:
-    """Yield the starts of tasks with so many agents."""
+    """Yield the starts of tasks with a number of agents."""
     for number, task in enumerate(tasks):
         name = str(getattr(task, "id", number))
         if hasattr(task, "goal_in"):

@@ -17,7 +17,8 @@ from hearth.envs.compact_text import said_step
 from hearth.envs.rewards import USUAL_REWARDS, Reward, checked_reward
 from hearth.envs.session import MOST_TICKS, Opening, opening
 from hearth.envs.text_agent import plain
-from hearth.envs.text_protocol_settings import CURRENT, protocol
+from hearth.envs.text_protocol_settings import CURRENT
+from hearth.envs.text_protocol_settings import protocol as words_of
 from hearth.envs.text_worlds import Play, Task, TextWorld, begun, commanded, fitted, observed, seen
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -153,7 +154,7 @@ class TextHomes:
                                  suggestion=f"worlds={max(group, worlds // group * group)}")  # fmt: skip
         self._knowledge = knowledge or _ours()
         allowed = frozenset(played(self._knowledge) if actions is None else actions)
-        self._play = _play(protocol, allowed, _count(limit, "limit"), checked_reward(reward), travel)
+        self._play = Play(words_of(protocol), allowed, _count(limit, "limit"), checked_reward(reward), travel)
         self._seed, self._draws, self._with_expert = seed, 0, expert
         self._places: list[_Place] = []
 
@@ -389,10 +390,6 @@ def _count(number: int, name: str) -> int:
         message = f"`{name}` is {str(number)[:40]}, not a whole number from 1"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"{name}=8")
     return number
-
-
-def _play(name: str, actions: frozenset[str], limit: int, reward: Reward, travel: bool) -> Play:
-    return Play(protocol(name), actions, limit, reward, travel)
 
 
 def _ours() -> Knowledge:

@@ -19,7 +19,7 @@ def reply(text, tokens=(10, 2), **more):
 
 
 class Lying:
-    """What the server does: each request takes the next deed; the last one is done for all that follow.
+    """Script of the server: each request takes the next deed; the last deed answers all later requests.
 
     A deed is a text (an honest reply), a mapping (JSON), bytes (a body), a number (a status), a pair of a status and
     headers, or a function of the request's JSON that returns one of these, or writes by itself (`raw`).

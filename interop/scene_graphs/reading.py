@@ -327,7 +327,7 @@ class _Reading:
             cut = completion.unreachable(own, self.knowledge)
             if not cut:
                 return own
-            self.note("boxes of the file left out, as so many things can't be walked to", ["box"] * cut)
+            self.note("boxes of the file left out; things that can't be walked to", ["box"] * cut)
         doors, count = completion.with_doors(completion.without_boxes(graph), _next(graph))
         self.note("doors from the largest room to the others", ["doorjamb"] * count)
         made = completion.laid_out(doors, self.file, self.knowledge)

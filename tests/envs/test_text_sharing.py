@@ -1,4 +1,4 @@
-"""What the text environment keeps from tick to tick changes no byte: random play, compared with the plain writer."""
+"""Caches of the text environment change no byte: random play, compared with the plain writer."""
 
 from __future__ import annotations
 

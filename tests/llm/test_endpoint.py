@@ -41,13 +41,8 @@ def asked(waits):
 def test_an_honest_reply(asked):
     with serving("Walk fridge 1") as (url, server):
         found = asked(url).ask(HELLO)
-    assert (found.text, found.tokens_in, found.tokens_out, found.counted, found.tries) == (
-        "Walk fridge 1",
-        10,
-        2,
-        True,
-        1,
-    )
+    measured = (found.tokens_in, found.tokens_out, found.counted, found.tries)
+    assert (found.text, *measured) == ("Walk fridge 1", 10, 2, True, 1)
     assert server.asked == [{"model": "mini", "messages": HELLO, "max_tokens": 256, "temperature": 0.0}]
 
 

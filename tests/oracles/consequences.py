@@ -24,7 +24,7 @@ def own(action: Action) -> Action:
 
 
 def excused(knowledge: Knowledge, facts: Facts, action: Action, binding: Mapping[str, int], code: Code) -> bool:
-    """Whether set 3 lets a check of set 2 pass. There is one such check of an action, and it is the last."""
+    """Return whether set 3 lets a check of set 2 pass: each action has one such check at most, its last."""
     assert action.later is not None
     return any(each.code is code and holds(knowledge, facts, each.formula, binding) for each in action.later.unless)
 

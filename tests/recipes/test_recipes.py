@@ -1,4 +1,4 @@
-"""Recipes of the household run by action set 3 and end in what they are for, in at least six of our seven homes."""
+"""Household recipes run by action set 3 and reach their goals in at least six of our seven homes."""
 
 import pytest
 from recipes.recipe_runs import KNOWN, home, outcome, program_of, recipes

@@ -1,4 +1,4 @@
-"""The grammar of what is legal now: every command written under it is legal, and every legal one can be written."""
+"""The grammar of legal commands: it writes every legal command of the moment, and no other."""
 
 from __future__ import annotations
 
