@@ -13,12 +13,6 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
 from hearth.schemas.failures import Code
 
-HEATS = 3
-"""Ticks that a microwave needs to heat a thing (`microwave_heats` of the processes)."""
-
-COOLS = 10
-"""Ticks that a fridge needs to cool a thing (`fridge_cools` of the processes)."""
-
 
 class UnreadableStepError(ValueError):
     """A step of a plan that has no counterpart."""
@@ -160,18 +154,19 @@ class _Writer:
             f"[Close] {oven}",
             f"[SwitchOn] {oven}",
         )
-        yield from ["[Wait]"] * HEATS
+        yield from self._waits("microwave_heats")
         yield from (f"[SwitchOff] {oven}", f"[Open] {oven}", f"[Grab] {one}", f"[Close] {oven}")
 
     def cool(self, args: Sequence[str], planned: Mapping[str, Any], low: Sequence[str]) -> Iterator[str]:
-        """Yield the steps of cooling something in a fridge.
-
-        In our homes it is off until somebody switches it on, and is opened while it is off, as all that has a switch.
-        """
+        """Yield the steps of cooling something in a fridge."""
         one, fridge = self.thing(args[0]), self.thing("fridge")
         yield from (f"[Walk] {fridge}", f"[Open] {fridge}", f"[PutIn] {one} {fridge}", f"[Close] {fridge}")
-        yield from (f"[SwitchOn] {fridge}", *["[Wait]"] * COOLS)
-        yield from (f"[SwitchOff] {fridge}", f"[Open] {fridge}", f"[Grab] {one}", f"[Close] {fridge}")
+        yield from self._waits("fridge_cools")
+        yield from (f"[Open] {fridge}", f"[Grab] {one}", f"[Close] {fridge}")
+
+    def _waits(self, process: str) -> list[str]:
+        """Return a wait for each tick that a process takes."""
+        return ["[Wait]"] * self.knowledge.processes[process].after
 
 
 WRITERS = {
