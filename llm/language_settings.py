@@ -38,7 +38,6 @@ class Asking:
         memory: earlier turns of the episode that it is shown again; 0 for none.
         most_turns: answers in an episode, at most; after them the agent waits until time is over.
         constrained: whether a grammar of the legal commands is sent, where the server obeys one.
-        images: whether the first-person picture is sent with the text.
     """
 
     temperature: float = 0.0
@@ -46,7 +45,6 @@ class Asking:
     memory: int = 8
     most_turns: int = 80
     constrained: bool = False
-    images: bool = False
 
     def as_json(self) -> dict[str, Any]:
         """Return the settings as results have them."""
