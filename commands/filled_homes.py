@@ -25,15 +25,14 @@ def convert_filled(source: Path, out: Path, mapping: Path | None, as_json: bool)
 
     found = read_home(source, mapping)
     written = home_export.write_release(found.graph, out)
+    faults = lint(found.graph, read_knowledge(None))
     if as_json:
         output.emit({
             "home": str(source), "file": out, "nodes": written, "edges": len(found.graph.edges),
             "filled": [filling._asdict() for filling in found.fillings], "left_out": found.left_out,
-            "ids": {str(number): own for number, own in found.ids.items()}})  # fmt: skip
-        output.status(len(found.left_out), strict=True)
+            "ids": {str(number): own for number, own in found.ids.items()}, "faults": faults})  # fmt: skip
+        output.status(len(found.left_out) + len(faults), strict=True)
         return
-    known = read_knowledge(None)
-    faults = lint(found.graph, known)
     report(found.left_out, key=alike)
     output.table(("", "number", "such as"), _rows(found.fillings))
     left = f"; left out: {len(found.left_out):,}" if found.left_out else ""
