@@ -120,6 +120,7 @@ def document(one: Shown) -> dict[str, Any]:
         "left_out": [{"step": print_step(step), "failure": failure} for step, failure in left_out],
         **({"explained": one.explained} if one.explained else {}),
         **({"unread": one.unread} if one.unread else {}),
+        **({"corrected": one.corrected} if one.corrected else {}),
     }
 
 
@@ -135,6 +136,10 @@ def printed(found: Mapping[str, Shown], *, explain: bool = False) -> None:
 
     first = next(iter(found.values()))
     output.line(f"Words: {output.shown(' '.join(first.words)) or 'none'}")
+    if first.corrected:
+        output.line(
+            f"Corrected {output.counted(len(first.corrected), 'word')}: {output.shown(', '.join(first.corrected))}"
+        )
     output.line("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
     for home, one in found.items():
         for step, failure in one.completion.left_out:

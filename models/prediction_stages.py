@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hearth.models.interface import Request, Steps
 from hearth.models.protocols import Trained
+from hearth.models.reading.misspelled_words import corrections
 from hearth.models.reading.program_writing import sketch_of
 from hearth.models.reading.reader import Reader
 from hearth.models.text.text_words import words_of
@@ -29,6 +30,7 @@ class Shown:
         failure: why nothing of it is left to run; None where something is.
         explained: of the reader, the words that each step of the program is for; "" for a step that prepares others.
         unread: of the reader, the parts of the text that are not understood.
+        corrected: of the reader, the misspelled words that it took for others: `teh = the`.
     """
 
     words: tuple[str, ...]
@@ -37,6 +39,7 @@ class Shown:
     failure: Failure | None
     explained: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
+    corrected: tuple[str, ...] = ()
 
 
 def show_text(trained: Trained, text: str, world: World, writer: Trained | None = None, beam: int = 1) -> Shown:
@@ -62,17 +65,18 @@ def show_reading(reader: Reader, text: str, world: World) -> Shown:
     if not found:
         return Shown((), (), complete((), world, world.home.knowledge), EMPTY)
     answer = reader.answer(text, world, rules_of(world.home.knowledge))
+    corrected = corrections(world.home.knowledge, text)
     sketch = sketch_of(answer.reading)
     written = answer.written
     if written is None:
         nothing = complete((), world, world.home.knowledge)
         understood = tuple(act.words for act in answer.reading.acts)
-        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread)
+        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread, corrected)
     left_out = tuple((Step(act.action, act.objects), failure) for act, failure in written.left_out)
     completion = Completion(written.execution, left_out, written.sources)
     acts = written.acts
     explained = tuple(acts[source].words if source >= 0 else "" for source in written.sources)
-    return Shown(found, sketch, completion, None, explained, answer.reading.unread)
+    return Shown(found, sketch, completion, None, explained, answer.reading.unread, corrected)
 
 
 EMPTY = Failure(Code.EMPTY, expected="a text", actual="no words")

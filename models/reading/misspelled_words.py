@@ -52,6 +52,12 @@ def spelled(known: Knowledge, text: str) -> str:
     return _WORD.sub(lambda found: _corrected(known, found[0]), text)
 
 
+def corrections(known: Knowledge, text: str) -> tuple[str, ...]:
+    """Return the words of a text that `spelled` puts right, each once: `teh = the`."""
+    pairs = ((word, _corrected(known, word)) for word in _WORD.findall(text.lower()))
+    return tuple(dict.fromkeys(f"{word} = {new}" for word, new in pairs if new != word))
+
+
 @lru_cache(maxsize=16_384)
 def _corrected(known: Knowledge, word: str) -> str:
     if word in _vocabulary(known) or is_english(word):

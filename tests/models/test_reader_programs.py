@@ -14,6 +14,7 @@ from hearth.kb.action_sets import LATEST
 from hearth.kb.loading.load import default
 from hearth.models.interface import Request
 from hearth.models.model_registry import restore
+from hearth.models.prediction_stages import show_reading
 from hearth.models.reading.program_writing import repeats
 from hearth.models.reading.reader import Reader
 from hearth.schemas.failures import Code
@@ -126,3 +127,9 @@ def test_the_command_says_what_was_understood_of_a_refused_text():
     result = show("reader", "Turn on the TV and launch the rocket")
     assert result.exit_code == 1 and "[SwitchOn] <television>" in result.output
     assert "Not understood: launch the rocket" in result.output and "Nothing runs" in result.output
+
+
+def test_words_that_are_put_right_are_named(maple):
+    shown = show_reading(Reader(), "Turn on teh televison", maple)
+    assert shown.corrected == ("teh = the", "televison = television")
+    assert show_reading(Reader(), "Turn on the television", maple).corrected == ()
