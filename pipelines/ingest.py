@@ -74,7 +74,7 @@ _NAMED = frozenset({json_records.NAME, LISTED, DOCUMENT, program_tables.NAME, ya
 
 READERS: dict[str, Callable[[Item, str], Iterable[IngestedRow | Reject]]] = {
     release.NAME: lambda item, salt: release.read(item),
-    alfred.NAME: lambda item, salt: [alfred.read(item, salt, recognition())],
+    alfred.NAME: lambda item, salt: alfred.read(item, salt, recognition()),
     crowd.NAME: lambda item, salt: [crowd.read(item, salt)],
     program_text.NAME: lambda item, salt: [program_text.read(item)],
     natural_language_plans.NAME: lambda item, salt: [natural_language_plans.read(item)],

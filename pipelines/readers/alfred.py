@@ -8,6 +8,7 @@ first annotator, and a description for each further one.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 from typing import Any
 
 from hearth.kb.knowledge import Knowledge
@@ -50,24 +51,31 @@ def scan(path: Place, place: str) -> Iterator[Item]:
         yield Item(name, NAME, place, {**own, "annotation": annotation})
 
 
-def read(item: Item, salt: str, knowledge: Knowledge) -> IngestedRow | Reject:
-    """Return the record of a program with its description, or of a further description."""
+def read(item: Item, salt: str, knowledge: Knowledge) -> Iterator[IngestedRow | Reject]:
+    """Yield the record of a program with its description, or of a further description.
+
+    The description of a plan that can't be read stays, and the plan alone is refused.
+    """
     said = _said(item.value["annotation"])
     if said is None:
-        return Reject.of(Code.BAD_JSON, "a description without text", file=item.place,
-                         suggestion="it needs `task_desc` and `high_descs`")  # fmt: skip
+        yield Reject.of(Code.BAD_JSON, "a description without text", file=item.place,
+                        suggestion="it needs `task_desc` and `high_descs`")  # fmt: skip
+        return
     title, description, worker = said
     scene = item.value["scene"] if isinstance(item.value["scene"], str) else None
     annotator = worker_hash(worker, salt) if worker else None
+    described = partial(record, item, scene=scene, worker=annotator, platform=NAME)
     plan = item.value.get("plan")
     if plan is None:
-        return record(item, "description", title, description, scene=scene, worker=annotator, platform=NAME)
+        yield described("description", title, description)
+        return
     try:
-        steps = steps_of(plan, knowledge)
+        text = "".join(f"{step}\n" for step in steps_of(plan, knowledge))
     except UnreadableStepError as error:
-        return Reject.of(error.code, str(error), file=item.place, suggestion=error.remedy)
-    text = "".join(f"{step}\n" for step in steps)
-    return record(item, "program", title, description, text=text, line=0, scene=scene, worker=annotator, platform=NAME)
+        yield described("description", title, description)
+        yield Reject.of(error.code, str(error), file=item.place, suggestion=error.remedy)
+        return
+    yield described("program", title, description, text=text, line=0)
 
 
 def _said(annotation: Any) -> tuple[str, str, str] | None:
