@@ -120,6 +120,7 @@ def document(one: Shown) -> dict[str, Any]:
         "left_out": [{"step": print_step(step), "failure": failure} for step, failure in left_out],
         **({"explained": one.explained} if one.explained else {}),
         **({"unread": one.unread} if one.unread else {}),
+        **({"forbidden": one.forbidden} if one.forbidden else {}),
         **({"corrected": one.corrected} if one.corrected else {}),
     }
 
@@ -140,6 +141,8 @@ def printed(found: Mapping[str, Shown], *, explain: bool = False) -> None:
         output.line(
             f"Corrected {output.counted(len(first.corrected), 'word')}: {output.shown(', '.join(first.corrected))}"
         )
+    for words in first.forbidden:
+        output.line(f"Not to be done: {output.shown(words)}")
     output.line("Sketch:", *(f"  {print_step(step)}" for step in first.sketch), sep="\n")
     for home, one in found.items():
         for step, failure in one.completion.left_out:

@@ -30,6 +30,7 @@ class Shown:
         failure: why nothing of it is left to run; None where something is.
         explained: of the reader, the words that each step of the program is for; "" for a step that prepares others.
         unread: of the reader, the parts of the text that are not understood.
+        forbidden: of the reader, the words for acts that are not to be done.
         corrected: of the reader, the misspelled words that it took for others: `teh = the`.
     """
 
@@ -40,6 +41,7 @@ class Shown:
     explained: tuple[str, ...] = ()
     unread: tuple[str, ...] = ()
     corrected: tuple[str, ...] = ()
+    forbidden: tuple[str, ...] = ()
 
 
 def show_text(trained: Trained, text: str, world: World, writer: Trained | None = None, beam: int = 1) -> Shown:
@@ -66,17 +68,18 @@ def show_reading(reader: Reader, text: str, world: World) -> Shown:
         return Shown((), (), complete((), world, world.home.knowledge), EMPTY)
     answer = reader.answer(text, world, rules_of(world.home.knowledge))
     corrected = corrections(world.home.knowledge, text)
+    forbidden = tuple(dict.fromkeys(act.words for act in answer.reading.forbidden))
     sketch = sketch_of(answer.reading)
     written = answer.written
     if written is None:
         nothing = complete((), world, world.home.knowledge)
         understood = tuple(act.words for act in answer.reading.acts)
-        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread, corrected)
+        return Shown(found, sketch, nothing, answer.failure, understood, answer.reading.unread, corrected, forbidden)
     left_out = tuple((Step(act.action, act.objects), failure) for act, failure in written.left_out)
     completion = Completion(written.execution, left_out, written.sources)
     acts = written.acts
     explained = tuple(acts[source].words if source >= 0 else "" for source in written.sources)
-    return Shown(found, sketch, completion, None, explained, answer.reading.unread, corrected)
+    return Shown(found, sketch, completion, None, explained, answer.reading.unread, corrected, forbidden)
 
 
 EMPTY = Failure(Code.EMPTY, expected="a text", actual="no words")

@@ -16,7 +16,7 @@ from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
 from hearth.models.reading.rewordings import TAKES_TOOL, rewordings
-from hearth.models.reading.spoken_things import Act, Clause, Spoken, bound, spoken_of, together
+from hearth.models.reading.spoken_things import ANY_ACT, NO_ACT, Act, Clause, Spoken, bound, spoken_of, together
 from hearth.models.reading.usual_places import usual_place, usual_way
 from hearth.schemas.program import ObjectRef
 
@@ -47,6 +47,10 @@ _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
+TAKEN_BACK = frozenset({"never mind", "forget it", "scratch that", "cancel that", "on second thought"})
+"""Words that take a request back: what is left of it is not known."""
+
+_USE = re.compile(r"(?:using|use|touching) (.+)")
 _LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugged in)\b")
 """A state in which a thing is not to be left: it is to be changed."""
 
@@ -57,6 +61,11 @@ _BACKWARD = re.compile(
     r"|and don't(?! forget)|but never|as long as you (?:don't|do not)"
     r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
 )
+
+
+def unknown_ban(text: str) -> tuple[Act, ...]:
+    """Return a ban on something that is no act of ours, in the words of the text."""
+    return (Act(NO_ACT, (), text),)
 
 
 class ClauseReader:
@@ -80,7 +89,7 @@ class ClauseReader:
             depth: how often the clause was reworded.
         """
         plain = plain_words(text)
-        if not plain:
+        if not plain or plain in TAKEN_BACK:
             return None
         if _LEFT_SO.match(plain) and (found := self._asked(plain, spoken, steps=False)) is not None:
             return found
@@ -93,10 +102,21 @@ class ClauseReader:
             if (found := self._asked(each, spoken, steps)) is not None:
                 return found
         if back := _BACKWARD.fullmatch(plain):
-            first, other = (self._asked(back[n], spoken, steps) for n in (1, 2))
+            first, other = self._asked(back[1], spoken, steps), self._banned(back[2], spoken, steps)
             if first:
-                return first._replace(forbidden=other.acts if other else ())
+                return first._replace(forbidden=other)
         return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
+
+    def _banned(self, text: str, spoken: Sequence[Spoken], steps: bool) -> tuple[Act, ...]:
+        """Return the acts that a ban names; `NO_ACT` where it names none of ours, as in `without a noise`.
+
+        A ban on using a thing is one on any act with it.
+        """
+        if use := _USE.fullmatch(text):
+            touched = self._asked(f"touch {use[1]}", spoken, steps)
+            return tuple(act._replace(action=ANY_ACT) for act in touched.acts) if touched else unknown_ban(text)
+        found = self._asked(text, spoken, steps)
+        return unknown_ban(text) if found is None else found.acts
 
     def _placed(self, text: str, spoken: Sequence[Spoken]) -> str:
         """Return a clause with the name of the place that its `there` stands for."""

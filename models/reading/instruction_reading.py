@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_matches import plain_words
-from hearth.models.reading.clause_reader import ClauseReader
+from hearth.models.reading.clause_reader import TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective
 from hearth.models.reading.misspelled_words import spelled
@@ -233,7 +233,9 @@ class _Text:
     def _stated(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
         if is_aside(text) or (spoken and _ALTERNATIVE.fullmatch(text)):
-            return Clause() if text.startswith("not ") else self.clauses.stated(text)
+            if BAN.match(text):
+                return Clause(forbidden=unknown_ban(text))
+            return self.clauses.stated(text)
         if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
             return Clause()
         return self.clauses.named(text)
@@ -296,11 +298,15 @@ def _main(text: str) -> tuple[str, str] | None:
     return (found[1], found[2]) if found else None
 
 
+BAN = re.compile(r"(?:do not|don't|never|without|not|no need to) ")
+"""The beginning of an aside that says what is not to be done."""
+
+
 def is_aside(text: str) -> bool:
     """Return whether a clause asks for nothing."""
     if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
         return False
-    return words().asides.fullmatch(text) is not None
+    return text not in TAKEN_BACK and words().asides.fullmatch(text) is not None
 
 
 def _verb_of(text: str) -> str:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from hearth.models.interface import Steps
 from hearth.models.reading.instruction_reading import Reading
 from hearth.models.reading.request_table import acts_of
-from hearth.models.reading.spoken_things import Act
+from hearth.models.reading.spoken_things import ANY_ACT, Act
 from hearth.repair.runnable_predictions import Completion, complete
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.goals import Goal
@@ -63,7 +63,7 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 
     Should the whole not run as its parts did, it is planned as a whole.
     """
-    acts = _wanted(reading.acts)
+    acts = _wanted([act for act in reading.acts if not is_forbidden(act, reading.forbidden)])
     planned = _planned(acts, world, rules)
     execution = run(world, Program(steps=planned.steps), rules)
     if execution.failure is not None:
@@ -72,6 +72,15 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
     execution, sources = _tidied(execution, planned.sources, reading, world, rules)
     left_out = tuple((acts[number], failure) for number, failure in planned.left_out if not acts[number].optional)
     return Written(acts, execution, sources, left_out, _unmet(Goal.of(*reading.goals), execution))
+
+
+def is_forbidden(act: Act | Step, forbidden: Sequence[Act]) -> bool:
+    """Return whether an act is one of those that are not to be done: of one without things, any of its name."""
+    nodes = set(_nodes(act.objects))
+    return any(
+        ban.action in (act.action, ANY_ACT) and (not ban.objects or bool(nodes & set(_nodes(ban.objects))))
+        for ban in forbidden
+    )
 
 
 class _Plan(NamedTuple):

@@ -17,8 +17,9 @@ from hearth.kb.loading.load import default
 from hearth.models.interface import Request, Settings, Steps, Training
 from hearth.models.reading.instruction_reading import Reading, read_text
 from hearth.models.reading.narration import narrated
-from hearth.models.reading.program_writing import Written, repeats, write_program
-from hearth.schemas.failures import Failure
+from hearth.models.reading.program_writing import Written, is_forbidden, repeats, write_program
+from hearth.schemas.failures import Code, Failure
+from hearth.schemas.syntax import print_step
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.world import World
 from hearth.storage.parallel import Seen, unseen
@@ -81,8 +82,13 @@ class Reader(Settings):
         written = write_program(reading, world, rules)
         if written.left_out and not is_description(text):
             return Answer(reading, None, written.left_out[0][1])
-        if not written.execution.program.steps:
+        steps = written.execution.program.steps
+        if not steps:
             return Answer(reading, None, refusal(Reading(), is_long=False))
+        if banned := next((step for step in steps if is_forbidden(step, reading.forbidden)), None):
+            return Answer(reading, None, Failure(Code.NOT_UNDERSTOOD, action=banned.action,
+                                                 expected="a way without what is not to be done",
+                                                 actual=f"`{print_step(banned)}` is needed"))  # fmt: skip
         return Answer(reading, written)
 
     def checkpoint(self) -> Checkpoint:

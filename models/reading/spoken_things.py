@@ -9,6 +9,12 @@ from hearth.models.reading.mentioned_nodes import Refs
 from hearth.models.reading.request_table import ActTemplate
 from hearth.schemas.literals import Literal, Name
 
+ANY_ACT = ""
+"""The action of a ban on any act with some things."""
+
+NO_ACT = "?"
+"""The action of a ban that names no act of ours: no program does it, and it is said."""
+
 
 class Act(NamedTuple):
     """Something to do.

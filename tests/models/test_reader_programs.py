@@ -133,3 +133,28 @@ def test_words_that_are_put_right_are_named(maple):
     shown = show_reading(Reader(), "Turn on teh televison", maple)
     assert shown.corrected == ("teh = the", "televison = television")
     assert show_reading(Reader(), "Turn on the television", maple).corrected == ()
+
+
+@pytest.mark.parametrize("text, banned", [
+    ("Go to bed but don't sleep", "Sleep"),
+    ("Go to bed but first turn off the TV and don't sleep", "Sleep"),
+    ("Don't open the fridge, but bring me a glass of water", "Open fridge"),
+    ("Make coffee without using the coffee maker", "SwitchOn coffe_maker"),
+])  # fmt: skip
+def test_what_is_not_to_be_done_is_not_done(text, banned, maple):
+    assert not any(step.startswith(banned) for step in steps_of(text, maple))
+
+
+def test_a_ban_is_named(maple):
+    shown = show_reading(Reader(), "Don't open the fridge, but switch on the television", maple)
+    assert shown.forbidden == ("open the fridge",)
+
+
+def test_a_text_that_is_taken_back_has_no_program(maple):
+    assert steps_of("Turn off the TV, never mind", maple) == []
+
+
+@pytest.mark.parametrize("manner", ["without any noise", "but don't scratch the table"])
+def test_a_ban_on_no_act_of_ours_is_named(manner, maple):
+    shown = show_reading(Reader(), f"Switch on the television {manner}", maple)
+    assert len(shown.forbidden) == 1 and shown.completion.execution.program.steps
