@@ -143,7 +143,7 @@ class _Writer:
         wanted = tuple([each.wanted for each in seen])
         said, end = _goal_words(task, self.wanted_goal, wanted, self.layout, self.protocol)
         counts = ", ".join([f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None])
-        return f"Goal: {said}{end} You see {counts} done."
+        return f"Goal: {said}{end}" + (f" You see {counts} done." if counts else "")
 
     def me(self) -> str:
         """Return the line about oneself and the rooms."""
@@ -284,8 +284,9 @@ class _PlacesText:
 @lru_cache(maxsize=1024)
 def _goal_words(task: str, goal: Goal, wanted: tuple[int, ...], place: Layout, protocol: Protocol) -> tuple[str, str]:
     """Return the words of a goal, and the stop that they lack."""
-    literals = zip(goal.literals(), wanted, strict=True)
-    said = printable(task) or "; ".join(_literal(literal, number, place, protocol) for (literal, _), number in literals)
+    counted = zip(goal.counts, wanted, strict=False)  # those of the parts follow
+    literals = (_literal(literal, number, place, protocol) for (literal, _), number in counted)
+    said = printable(task) or "; ".join((*literals, *map(str, goal.parts)))
     return _shortened(said), "" if said.endswith((".", "!", "?")) else "."
 
 

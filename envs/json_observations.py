@@ -55,17 +55,17 @@ def seen_goal(goal: Goal, view: View) -> Iterator[SeenLiteral]:
 def _terms(goal: Goal, home: Home) -> tuple[tuple[Literal[Name], int, tuple[tuple[int, ...], ...] | None], ...]:
     """Return the counted literals of a goal, each with the sets of nodes that its terms may stand for.
 
-    No sets of a literal that nobody sees fulfilled: one about actions or with variables.
+    No sets of a literal that nobody sees fulfilled: one about actions, with variables, or of a ban.
     """
     return tuple(
         (
             literal,
             wanted,
             None
-            if acts(literal, home) or any(str(term).startswith("?") for term in literal.terms)
+            if not aims or acts(literal, home) or any(str(term).startswith("?") for term in literal.terms)
             else tuple(_sets(term, home) for term in literal.terms),
         )
-        for literal, wanted in goal.literals()
+        for literal, wanted, aims in goal.aims()
     )
 
 

@@ -77,6 +77,17 @@ class Goal:
             for goal in part.goals:
                 yield from goal.literals()
 
+    def aims(self) -> Iterator[tuple[Literal[Name], int, bool]]:
+        """Yield what `literals` does, each with whether more of it that holds is progress: not so in a ban.
+
+        A part `not`, `always` or `never` is kept or broken; nothing of it is done by and by.
+        """
+        yield from ((literal, number, True) for literal, number in self.counts)
+        for part in self.parts:
+            for goal in part.goals:
+                for literal, number, aims in goal.aims():
+                    yield literal, number, aims and part.join not in ("not", *LASTING)
+
     @property
     def lasts(self) -> bool:
         """Return whether some of its parts are about every time up to the end."""

@@ -8,6 +8,7 @@ import random
 import pytest
 from golden_files import compare
 
+import hearth
 from hearth.challenges.published_tasks import tasks
 from hearth.envs.answer_forms import command_line, read_answer
 from hearth.envs.rewards import Rewards
@@ -377,3 +378,14 @@ def test_a_seeded_task_is_a_value():
     begin = opening("maple", MILK, agents=1)
     task = SeededTask("seed-3", begin, 3)
     assert task.start().graph() == begin(3)[0].graph() and task.goal == begin(3)[1]
+
+
+@pytest.mark.parametrize("goal, line", [
+    ("never OPEN(fridge) and HOLDS(agent, milk)", "Goal: hold milk; never (OPEN(fridge)). You see 0/1 done."),
+    ("never OPEN(fridge)", "Goal: never (OPEN(fridge))."),
+    ("always CLOSED(fridge)", "Goal: always (CLOSED(fridge))."),
+    ("OPEN(fridge) or OPEN(microwave)", "Goal: (OPEN(fridge)) or (OPEN(microwave))."),
+])  # fmt: skip
+def test_a_ban_is_told_as_a_ban_and_nothing_of_it_counts_as_done(goal, line):
+    observation, _ = hearth.TextHome("maple", goal).reset(seed=4)
+    assert observation.splitlines()[0].startswith(line)

@@ -166,9 +166,11 @@ class _Writer:
     def goal(self, task: str) -> str:
         """Return the line about the goal, with the parts of it that are seen."""
         seen = list(seen_goal(self.wanted_goal, self.view))
-        said = printable(task) or "; ".join(self._said(each) for each in seen)
+        counted = seen[: len(self.wanted_goal.counts)]
+        said = printable(task) or "; ".join([*map(self._said, counted), *map(str, self.wanted_goal.parts)])
         counts = ", ".join(f"{each.seen}/{each.wanted}" for each in seen if each.seen is not None)
-        return f"Goal: {_shortened(said)}{'' if said.endswith(('.', '!', '?')) else '.'} You see {counts} done."
+        line = f"Goal: {_shortened(said)}{'' if said.endswith(('.', '!', '?')) else '.'}"
+        return f"{line} You see {counts} done." if counts else line
 
     def _said(self, each: SeenLiteral) -> str:
         """Return a counted literal in words, where the protocol has a phrase; as goals write it otherwise."""
