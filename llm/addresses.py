@@ -31,6 +31,9 @@ HIDDEN = "[key]"
 """Stands where a key was."""
 
 _NAMED = re.compile(r"llm:(?P<model>[^@\s][^\s]*?)(?:@(?P<url>https?://.*))?", re.DOTALL)
+_HOST = re.compile(r"@(?:localhost|[^@]*[/:.][^@]*)$")
+"""An address without `http://` behind a model's name: it would be taken for a part of the name."""
+
 _REMEDY = f"put the key into the environment variable {KEY}, and leave it out of the address"
 
 
@@ -46,7 +49,7 @@ def read_name(name: str) -> tuple[str, str]:
         HearthError: BAD_ARGUMENT: it is not such a name; as of `checked_url`. The message repeats no address.
     """
     found = _NAMED.fullmatch(name)
-    if found is None or "://" in found["model"]:
+    if found is None or "://" in found["model"] or _HOST.search(found["model"]):
         message = "a language model's name is not `llm:MODEL@URL`"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"llm:smollm2@{LOCAL}")
     return found["model"], checked_url(found["url"] or os.environ.get(URL, LOCAL))
@@ -81,9 +84,15 @@ def key_for(url: str, variable: str = "") -> str:
     Args:
         url: the server's address.
         variable: with the key; else `HEARTH_LLM_KEY`, or the variable that belongs to the host.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: the variable is not set. The message does not repeat it, because it may be a key.
     """
     if variable:
-        return os.environ.get(variable, "").strip()
+        if variable not in os.environ:
+            message = "the variable that `key` names is not set"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"export {KEY}=..., and leave `key` out")
+        return os.environ[variable].strip()
     of_host = KEYS_OF_HOSTS.get(urlsplit(url).hostname or "")
     return (os.environ.get(KEY) or (os.environ.get(of_host, "") if of_host else "")).strip()
 

@@ -160,12 +160,24 @@ def _states(entity: Entity, shape: Shape) -> Iterator[str]:
         name = next((flag for flag in shape.flags if key == flag or key.endswith("states" + flag)), "")
         if name and isinstance(value, bool):
             yield shape.flags[name][0 if value else 1]
-    words = {key_of(word): state for word, state in shape.states.items()}
+    yield from (state for state in map(_by_word(shape).get, map(key_of, _said(entity, shape))) if state)
+
+
+def _by_word(shape: Shape) -> dict[str, str]:
+    return {key_of(word): state for word, state in shape.states.items()}
+
+
+def _said(entity: Entity, shape: Shape) -> Iterator[str]:
+    """Yield the words that an entry has for its states."""
     for value in values_of(entity, shape.fields["state"]):
         for word in [value] if isinstance(value, str) else value if isinstance(value, list) else []:
-            state = words.get(key_of(word)) if isinstance(word, str) else None
-            if state:
-                yield state
+            if isinstance(word, str):
+                yield word
+
+
+def unknown_states(entity: Entity, shape: Shape) -> list[str]:
+    """Return the words for states of an entry that mean none of ours."""
+    return [word for word in _said(entity, shape) if key_of(word) not in _by_word(shape)]
 
 
 def wanted(entity: Entity, names: Sequence[str]) -> list[str]:

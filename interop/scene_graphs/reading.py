@@ -12,7 +12,7 @@ from hearth.homes.object_shapes import form
 from hearth.interop.scene_graphs import completion
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
 from hearth.interop.scene_graphs.entities import Entity, entities_of
-from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of
+from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
@@ -103,6 +103,10 @@ class _Reading:
         edges = self._edges(ties, entries, rooms, numbers)
         graph = self._graph([*rooms.values(), *entries], numbers, edges)
         self._note_units(entries, units)
+        unknown = [
+            f"{word} of {entry.class_name}" for entry in entries for word in unknown_states(entry.entity, self.shape)
+        ]
+        self.note("words for states that mean none, left out", unknown)
         graph = self.completed(self._singly_held(graph))
         ids = {numbers[id(entry)]: entry.entity.keys[0] for entry in entries if entry.entity.keys}
         return ReadGraph(graph, self.counted(), tuple(self.left_out), ids)

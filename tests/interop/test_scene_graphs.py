@@ -345,3 +345,9 @@ def test_pairs_of_things_that_are_described_in_full_are_things():
 def test_on_the_floor_is_in_the_room():
     found = read([{"label": "sofa", "room": "living room"}, {"label": "box", "on": "floor"}])
     assert found.left_out == () and rooms_of(found)["box"] == "living_room"
+
+
+def test_words_for_states_that_mean_none_are_counted():
+    found = read([{"label": "fridge", "state": "opn"}, {"label": "television", "states": ["on", "onn"]}])
+    [note] = [note for note in found.fillings if note.what.startswith("words for states")]
+    assert note.number == 2
