@@ -64,7 +64,7 @@ _BACKWARD = re.compile(
 
 
 def unknown_ban(text: str) -> tuple[Act, ...]:
-    """Return a ban on something that is no act of ours, in the words of the text."""
+    """Return a ban on something that is not among our acts, in the words of the text."""
     return (Act(NO_ACT, (), text),)
 
 

@@ -30,3 +30,14 @@ def test_names_repeat_only_where_files_mirror_each_other():
     repeated = {name: where for name, where in folders.items() if name not in SUBJECTS and not mirrored(where)}
     assert len(folders) > 300
     assert not repeated, f"give each a telling name: {repeated}"
+
+
+LARGEST = 4_000_000
+"""Bytes of a tracked file: more than any of ours; packages that somebody fetched beside the code have more."""
+
+
+def test_no_tracked_file_is_a_package_or_larger_than_ours():
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    files = [ROOT / name for name in listed.split("\0") if name and (ROOT / name).is_file()]
+    strange = [f.relative_to(ROOT).as_posix() for f in files if f.suffix == ".whl" or f.stat().st_size > LARGEST]
+    assert not strange, f"remove them with git rm --cached: {strange}"
