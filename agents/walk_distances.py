@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.simulation.motion.ground import Here, ground_of
 from hearth.simulation.motion.navigation import Field
 from hearth.simulation.world.home import Home

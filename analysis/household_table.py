@@ -11,8 +11,8 @@ from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episodes import Known
 from hearth.challenges.household_as_challenge import as_task, split_of
 from hearth.challenges.household_definition import NAME, settings
+from hearth.challenges.household_task_workers import drawn_tasks
 from hearth.challenges.metrics import CONFIDENT, mean, of_tasks, share_interval
-from hearth.challenges.parallel_household_tasks import drawn_tasks
 from hearth.challenges.published_tasks import PUBLISHED
 from hearth.challenges.result_files import Results
 from hearth.challenges.suite_runs import run

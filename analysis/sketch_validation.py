@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from hearth.analysis.sketch_evaluation import Counts
-from hearth.analysis.sketch_learning import Example, fit, parts
+from hearth.analysis.sketch_model_training import Example, fit, parts
 from hearth.repair.sketch import Keep
 from hearth.repair.sketch_model import SketchModel
 from hearth.schemas.rng import derive

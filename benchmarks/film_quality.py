@@ -22,7 +22,7 @@ from measurement import Figure, as_line, finish, parser
 
 from hearth.analysis.episode_figure import ticks_of
 from hearth.analysis.random_program_home_pairs import FilmedPair, pairs
-from hearth.challenges.episode_films import execution_of
+from hearth.challenges.episode_executions import execution_of
 from hearth.challenges.result_files import read
 from hearth.homes.library import load_graph
 from hearth.kb.loading.load import default

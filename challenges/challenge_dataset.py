@@ -19,7 +19,7 @@ from hearth.challenges.household import HouseholdTask
 from hearth.challenges.household_as_challenge import OpenTask, as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
 from hearth.challenges.household_definition import settings
-from hearth.challenges.parallel_household_tasks import drawn_tasks
+from hearth.challenges.household_task_workers import drawn_tasks
 from hearth.challenges.result_files import Results, episode_data
 from hearth.challenges.tasks import Task
 from hearth.datasets.damage_faults import reading

@@ -26,7 +26,7 @@ def film(
       hearth challenge film episode.jsonl wah-test-1-0003 --view first --out film
     """
     from hearth.analysis.episode_figure import episode_of, ticks_of
-    from hearth.challenges.episode_films import execution_of
+    from hearth.challenges.episode_executions import execution_of
     from hearth.challenges.verification import read_whole
     from hearth.homes.library import load_graph
     from hearth.kb.loading.load import default

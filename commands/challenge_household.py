@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
-    from hearth.challenges.parallel_household_tasks import Drawing
+    from hearth.challenges.household_task_workers import Drawing
 
 HOUSEHOLD = "household"
 """The challenge whose tasks are made one by one (`challenges/household.py`)."""
@@ -57,7 +57,7 @@ def print_solved(splits: list[str] | None, limit: int | None, workers: int, as_j
     Every task that is drawn was solved by an agent that sees everything.
     """
     from hearth.challenges.household_definition import NAME, settings
-    from hearth.challenges.parallel_household_tasks import attempts
+    from hearth.challenges.household_task_workers import attempts
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 
@@ -127,7 +127,7 @@ def _share(figures: dict[str, Any]) -> str:
 
 
 def _drawn(split: str, seed: int, limit: int | None, workers: int) -> Drawing:
-    from hearth.challenges.parallel_household_tasks import drawn_tasks
+    from hearth.challenges.household_task_workers import drawn_tasks
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
 

@@ -23,7 +23,7 @@ def fitted(
     folds: int, seed: int, *, as_json: bool
 ) -> None:  # fmt: skip
     """Fit a model on annotations and write it, or cross-validate it, or both; by default on top of ours."""
-    from hearth.analysis import sketch_learning as learning
+    from hearth.analysis import sketch_model_training as learning
     from hearth.analysis.sketch_evaluation import annotated
     from hearth.repair.sketch_model import model_of
 

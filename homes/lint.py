@@ -7,8 +7,8 @@ from functools import cached_property
 from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
 from hearth.homes.node_defaults import CATEGORIES
 from hearth.homes.object_shapes import form
-from hearth.homes.plans.floor import REACH
 from hearth.homes.plans.plan_checks import joined
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code

@@ -7,7 +7,6 @@ from hearth.homes.from_graph.furniture_arrangement import FRONT, passable, spots
 from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import bottom, box_over, footprint
 from hearth.homes.object_shapes import form
-from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.furniture import NoPlaceError
 from hearth.homes.plans.home_shell import Thing, interior, strip
 from hearth.homes.plans.layout import Layout
@@ -15,6 +14,7 @@ from hearth.homes.plans.object_packing import stand
 from hearth.homes.plans.obstacles import Obstacles
 from hearth.homes.plans.plan import Piece
 from hearth.homes.plans.support_surfaces import FAR, local_of, support_of
+from hearth.homes.plans.walkable_floor import HEAD
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code

@@ -11,11 +11,11 @@ from hearth.homes.geometry import DIRECTIONS, Rect, bottom, box_over, facing_fro
 from hearth.homes.geometry import turned as extents
 from hearth.homes.object_shapes import Form, form
 from hearth.homes.plans import grid_shapes
-from hearth.homes.plans.floor import BODY, CELL, HEAD
 from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
 from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.obstacles import Obstacles, Stand
 from hearth.homes.plans.plan import Room
+from hearth.homes.plans.walkable_floor import BODY, CELL, HEAD
 from hearth.homes.relations import gaps
 from hearth.schemas.graph import Box
 from hearth.schemas.yaml_fields import Faults

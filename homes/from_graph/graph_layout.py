@@ -16,11 +16,11 @@ from hearth.homes.from_graph.room_rectangles import RoomPair, packed
 from hearth.homes.from_graph.rooms_and_supports import Parts
 from hearth.homes.geometry import Rect
 from hearth.homes.plans import home_shell
-from hearth.homes.plans.floor import REACH
 from hearth.homes.plans.home_shell import Thing, outer_walls, shared_wall, span
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import OUTSIDE, Doorway, Plan, Room, Window
 from hearth.homes.plans.plan_entries import MOST_ROOMS
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Mapping
 
 from hearth.homes.geometry import OPPOSITE_WALL, Rect, along_x, bottom, footprint, top
 from hearth.homes.object_shapes import form
-from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.home_shell import WALL, Opening, Shell, Thing, shared_wall
 from hearth.homes.plans.layout import Layout
 from hearth.homes.plans.plan import Doorway, Plan, Room
+from hearth.homes.plans.walkable_floor import HEAD
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY

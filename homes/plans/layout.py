@@ -7,12 +7,12 @@ from functools import cached_property
 from hearth.homes.geometry import EPSILON, Rect, box_over, facing_from, footprint
 from hearth.homes.object_shapes import form
 from hearth.homes.plans import grid_shapes, home_shell, plan_checks
-from hearth.homes.plans.floor import CELL, Floor, grid
 from hearth.homes.plans.furniture import Furnishing, furnish
 from hearth.homes.plans.home_shell import Shell, Thing, interior, span, strip
 from hearth.homes.plans.object_packing import contents
 from hearth.homes.plans.plan import Plan, Room
 from hearth.homes.plans.plan_entries import read_plan
+from hearth.homes.plans.walkable_floor import CELL, Floor, grid
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Box

@@ -6,9 +6,9 @@ import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, facing_from, footprint, top
 from hearth.homes.object_shapes import Form
-from hearth.homes.plans.floor import HEAD
 from hearth.homes.plans.home_shell import Opening, Thing, before, interior, strip
 from hearth.homes.plans.plan import Room
+from hearth.homes.plans.walkable_floor import HEAD
 
 Stand = tuple[Rect, float, float]
 """A possible place of a thing: the floor under it, its yaw, its underside."""

@@ -6,9 +6,9 @@ from typing import TypeVar
 import numpy as np
 
 from hearth.homes.geometry import Rect, bottom, footprint, front_of, intrusion, top, wall_of
-from hearth.homes.plans.floor import REACH, Floor, stands_on_floor
 from hearth.homes.plans.home_shell import Shell, Thing, before, interior, strip
 from hearth.homes.plans.plan import OUTSIDE, Plan
+from hearth.homes.plans.walkable_floor import REACH, Floor, stands_on_floor
 from hearth.schemas.failures import Code
 from hearth.schemas.yaml_fields import Faults
 

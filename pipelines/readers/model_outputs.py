@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from hearth.kb.language.forms.orders import orders_in
+from hearth.kb.language.forms.order_dialogues import orders_in
 from hearth.kb.language.program_lines import is_plan
 from hearth.pipelines.readers.chat_titles_from_requests import accepts, rejects, titled
 from hearth.pipelines.readers.json_actions import is_action, is_mapping, steps_of_mapping

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hearth.homes.plans import grid_shapes
-from hearth.homes.plans.floor import Floor, check_extent
+from hearth.homes.plans.walkable_floor import Floor, check_extent
 from hearth.rendering.arrays import Floats
 from hearth.rendering.scene.floor_cells import BODY, CELL, cells_of, eroded, is_in_the_way
 from hearth.rendering.scene.room_shell import hung_doors

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from hearth.rendering.arrays import Floats
 from hearth.rendering.models.mesh import Mesh, join
 from hearth.rendering.rays.kernels import COLUMNS, SHINE, nearer, triangle_rows
-from hearth.rendering.rays.light_grids import LightGrids
 from hearth.rendering.rays.ray_casting import Caster, Hits
+from hearth.rendering.rays.shadow_grids import LightGrids
 from hearth.rendering.rays.shadow_maps import ShadowMaps
 from hearth.rendering.scene.instances import Thing, placed
 

@@ -1,6 +1,6 @@
 """Steps done as their modifiers say: by which hand, at which place, looking which way."""
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.kb.modifiers import faults, numbers, value
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Box

@@ -11,9 +11,9 @@ from hearth.homes.from_graph.layout_from_boxes import measured
 from hearth.homes.geometry import Rect, bottom
 from hearth.homes.object_shapes import form
 from hearth.homes.plans import grid_shapes
-from hearth.homes.plans.floor import HEAD, REACH, Floor, gaps
 from hearth.homes.plans.home_shell import WALL, interior, strip
 from hearth.homes.plans.layout import Layout
+from hearth.homes.plans.walkable_floor import HEAD, REACH, Floor, gaps
 from hearth.schemas.graph import Box, Spot
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY
 from hearth.simulation.motion.navigation import BODY_RADIUS, Ways, digest_of

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from hearth.homes.plans.floor import Floor
+from hearth.homes.plans.walkable_floor import Floor
 from hearth.schemas.graph import Spot
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from random import Random
 
 import numpy as np
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.schemas.graph import Spot
 from hearth.simulation.motion.ground import Here, ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS

@@ -20,8 +20,8 @@ from hearth.challenges.household_definition import (
     split_named,
 )
 from hearth.challenges.household_files import read_tasks, write_tasks
+from hearth.challenges.household_task_workers import attempts, drawn_tasks
 from hearth.challenges.instruction_reader import read_instruction
-from hearth.challenges.parallel_household_tasks import attempts, drawn_tasks
 from hearth.commands import challenge_household, play
 from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.loading.load import default

@@ -11,8 +11,8 @@ from hearth.homes.from_graph.graph_layout import lay_out
 from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
 from hearth.homes.from_graph.room_rectangles import DOOR_WALL, packed
 from hearth.homes.geometry import Rect, footprint, intrusion
-from hearth.homes.plans.floor import stands_on_floor
 from hearth.homes.plans.home_shell import interior, shared_wall
+from hearth.homes.plans.walkable_floor import stands_on_floor
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.graph import Edge, EnvironmentGraph, Node

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from hearth.homes import library
 from hearth.homes.geometry import bottom, footprint, intrusion, top
 from hearth.homes.object_shapes import form
-from hearth.homes.plans.floor import stands_on_floor
 from hearth.homes.plans.home_shell import interior
 from hearth.homes.plans.layout import read
+from hearth.homes.plans.walkable_floor import stands_on_floor
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 

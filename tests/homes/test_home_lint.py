@@ -159,7 +159,7 @@ def test_the_releases_homes_have_the_faults_they_are_known_for(real_data):
 
 @pytest.mark.parametrize("size", [(-4.0, 2.0, 4.0), (1e6, 2.0, 4.0), (float("nan"), 2.0, 4.0)])
 def test_a_room_of_no_size_is_a_fault_and_no_memory(size):
-    from hearth.homes.plans.floor import grid
+    from hearth.homes.plans.walkable_floor import grid
     from hearth.schemas.diagnostics import HearthError
 
     class Plan:

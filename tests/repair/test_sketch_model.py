@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from hearth.analysis import sketch_learning as learning
+from hearth.analysis import sketch_model_training as learning
 from hearth.analysis import sketch_validation as validation
 from hearth.kb.loading.load import default
 from hearth.repair import sketch_model

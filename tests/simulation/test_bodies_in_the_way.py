@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from walks import at, id_of, step, walked
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.simulation.engine import tick
 from hearth.simulation.env import with_agents
 from hearth.simulation.motion.navigation import BODY_RADIUS

@@ -9,7 +9,7 @@ import pytest
 from walks import OWN, own_home, step
 
 from hearth.homes import library
-from hearth.homes.plans.floor import REACH, gaps
+from hearth.homes.plans.walkable_floor import REACH, gaps
 from hearth.homes.procedural.home_generator import generate
 from hearth.homes.scene_graph import scene
 from hearth.kb.loading.load import default

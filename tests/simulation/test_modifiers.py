@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hearth.homes.plans.floor import REACH, gaps
+from hearth.homes.plans.walkable_floor import REACH, gaps
 from hearth.kb.action_grammar import check
 from hearth.kb.loading.load import default
 from hearth.kb.modifiers import MODIFIERS, faults

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from walks import OWN, at, id_of, own_home, step, walked
 
-from hearth.homes.plans.floor import REACH, gaps
+from hearth.homes.plans.walkable_floor import REACH, gaps
 from hearth.kb.loading.load import default
 from hearth.schemas.failures import Code, Failure
 from hearth.simulation.actions.legal import legal

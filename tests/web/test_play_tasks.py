@@ -6,7 +6,7 @@ import pytest
 from web.playing import Player, alone, begun
 
 from hearth.analysis.episode_figure import ticks_of
-from hearth.challenges.episode_films import execution_of
+from hearth.challenges.episode_executions import execution_of
 from hearth.challenges.published_tasks import tasks
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify

@@ -9,7 +9,7 @@ from hearth.kb.language.forms.code_calls import CODE
 from hearth.kb.language.forms.commented_steps import COMMENTED
 from hearth.kb.language.forms.form import Form
 from hearth.kb.language.forms.operator_lines import OPERATORS
-from hearth.kb.language.forms.orders import ORDERS
+from hearth.kb.language.forms.order_dialogues import ORDERS
 from hearth.kb.language.forms.org_mode import ORG_MODE
 from hearth.kb.language.forms.outlines import OUTLINES
 from hearth.kb.language.forms.pddl_plans import PDDL

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.simulation.arrays.kernels.floor_moves import cell_at
 from hearth.simulation.arrays.kernels.places import agent_of, container, displaced
 from hearth.simulation.arrays.kernels.set_words import (

@@ -15,7 +15,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from hearth.homes.plans.floor import REACH
+from hearth.homes.plans.walkable_floor import REACH
 from hearth.schemas.optional_libraries import library
 from hearth.simulation.motion.navigation import BODY_RADIUS
 

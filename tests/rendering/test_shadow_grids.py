@@ -8,9 +8,9 @@ pytest.importorskip("open3d")
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.figure import Figure
 from hearth.rendering.people.random_people import person
-from hearth.rendering.rays.light_grids import LightGrids
 from hearth.rendering.rays.light_rays import FAR
 from hearth.rendering.rays.ray_casting import Caster
+from hearth.rendering.rays.shadow_grids import LightGrids
 from hearth.rendering.scene.instances import Thing
 from hearth.rendering.scene.triangles import Part
 
