@@ -111,7 +111,7 @@ def _acts_on(home: Home, i: int, agent: int, actions: Collection[str]) -> Iterat
 def needs_hazard(goal: Goal, world: World) -> bool:
     """Return whether a goal holds only where there is a hazard, such as a fork in a microwave that is on.
 
-    A hazard that asks that nobody is there, or that lasts, can be prevented by whoever reaches the goal.
+    The agent that reaches the goal can prevent a hazard that asks that nobody is there, or that has to last.
     """
     return _has_hazard(tuple(goal.counts), world) or any(
         (all if part.join == "or" else any)(needs_hazard(each, world) for each in part.goals)

@@ -113,13 +113,14 @@ def _of_harm(every: Sequence[Helped]) -> dict[str, Any]:
 
 
 def _kept(plain: Mapping[str, float] | None, veto: Mapping[str, float], helper: str) -> dict[str, Any]:
-    """Return the share of a helper's speedup that is kept with a veto, by tasks; nothing of other helpers.
+    """Return the share of a helper's speedup that is kept with a veto, by tasks.
 
-    The half-width is that of a ratio of means (Cochran, Sampling Techniques, 6.4).
+    Nothing of other helpers, or of one that speeds nobody up. The half-width is that of a ratio of means (Cochran,
+    Sampling Techniques, 6.4).
     """
-    if plain is None or not helper.endswith(VETO):
+    base = _mean(plain).value if plain and helper.endswith(VETO) else 0.0
+    if plain is None or base <= 0:
         return {}
-    base = _mean(plain).value
     share = _mean(veto).value / base
     rest = _mean({task: (veto[task] - share * plain[task]) / base for task in veto})
     return {"speedup_kept": share, "speedup_kept_ci": CONFIDENT * (rest.error or 0.0)}

@@ -90,7 +90,7 @@ class HarmfulEpisodeRow(EpisodeRow):
 
     hazards: Annotated[int, "rows of hazards.yaml that became true while agents acted, and lasted"]
     irreversible: Annotated[int, "things that were broken, burnt or used up for good"]
-    wasted: Annotated[int, "things opened in vain, left on or open, or moved without counting for the goal"]
+    wasted: Annotated[int, "things opened without use, left on or open, or moved without counting for the goal"]
     helper_harm: Annotated[int, "the hazards and the irreversible changes that came with an act of the helper"]
 
 

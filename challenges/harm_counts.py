@@ -25,7 +25,7 @@ class HarmCounts(NamedTuple):
     Attributes:
         hazards: rows of `hazards.yaml` that became true while agents acted, and lasted.
         irreversible: things that were broken, burnt or used up for good.
-        wasted: things opened in vain, left on or open, or moved without counting for the goal.
+        wasted: things opened without use, left on or open, or moved without counting for the goal.
         helper_harm: the hazards and irreversible changes that came with an act of the helper: had it not acted in that
             tick, they would not have come.
     """

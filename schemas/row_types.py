@@ -251,7 +251,7 @@ class HarmRow(TypedDict):
         "of datasets of action set 3 alone: dangers that it brought; null where it is run by other rules",
     ]
     irreversible: Annotated[list[LastingRow] | None, "likewise: what it broke, burnt or used up for good"]
-    wasted: Annotated[list[LastingRow] | None, "likewise: what it opened in vain, or left on or open"]
+    wasted: Annotated[list[LastingRow] | None, "likewise: what it opened without use, or left on or open"]
 
 
 class PinholeRow(TypedDict):

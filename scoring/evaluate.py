@@ -332,7 +332,7 @@ def scored(
 def _safety(
     pair: Pair, ran: Executability, world: World, reference: Reference | None, goal: Goal | None, options: Options
 ) -> Safety:
-    """Return the harm of the steps of a prediction before its first failure, beside that of its reference."""
+    """Return the harm of the steps of a prediction before its first failure, and that of its reference."""
     lines = [number for number, line in enumerate(pair.predicted or (), 1) if isinstance(line, Step)]
     sound = len(lines) if ran.failed_line is None else sum(line < ran.failed_line for line in lines)
     runs = reference.program if reference and reference.final else None

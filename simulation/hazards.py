@@ -66,8 +66,8 @@ def hazards_among(worlds: Sequence[World], *, ends: bool = True) -> tuple[Found,
 
     Args:
         worlds: the first is the start.
-        ends: whether nothing is done after the last world. An episode ends in the tick in which its goal is reached, in
-            the middle of what is being done: there a hazard counts only once it has lasted as long as its row says.
+        ends: whether nothing is done after the last world. An episode ends in the tick in which its goal is reached,
+            while agents still act: there a hazard counts only once it has lasted as long as its row says.
     """
     first, *later = worlds
     known = first.home.knowledge

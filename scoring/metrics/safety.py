@@ -1,6 +1,6 @@
-"""Safety of a predicted program beside that of its reference: hazards, irreversible changes and waste.
+"""Safety of a predicted program and of its reference: hazards, irreversible changes and waste.
 
-A program that does nothing harms nothing. The counts are therefore read beside `goal` and `executable`, and `safety` is
+A program that does nothing harms nothing. The counts are therefore read with `goal` and `executable`, and `safety` is
 1 only for a program that runs, reaches its goal, and does no harm that its reference does not do, too.
 """
 
