@@ -25,7 +25,7 @@ def hazards(
     chosen: ProgramOptions = ProgramOptions(),
     as_json: bool = False,
 ) -> None:
-    """Run a program by action set 3, and print the hazards, the lasting harm, and the things it opens without use or leaves on or open.
+    """Run a program by action set 3, and print its hazards, its lasting harm, and its waste: things opened or left on.
 
     A hazard is a row of the knowledge's hazards.yaml, such as a burner that is on with nobody in the room, or paper on
     a hot stove. Each is printed with the step after which it was there, how long it lasted, its severity (3 fire or
