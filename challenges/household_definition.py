@@ -98,11 +98,25 @@ def home_named(name: str, knowledge: Knowledge) -> Home:
     Raises:
         HearthError: UNKNOWN_HOME.
     """
-    head, *numbers = name.split("_")
-    if head == "home" and len(numbers) == 2 and all(each.isdecimal() for each in numbers):
-        layout = generate(int(numbers[0]), int(numbers[1]), knowledge)
+    numbers = numbers_of(name)
+    if numbers is not None:
+        layout = generate(*numbers, knowledge)
         return Home.from_graph(scene(layout, knowledge), name, knowledge)
     return Home.from_graph(load_graph(name, knowledge), name, knowledge)
+
+
+def home_words(name: str) -> str:
+    """Return the words for a home: its name, or for `home_4_17` that it is a generated home of four rooms."""
+    rooms = numbers_of(name)
+    return f"a generated home of {rooms[0]} rooms" if rooms else name
+
+
+def numbers_of(name: str) -> tuple[int, int] | None:
+    """Return the rooms and the seed of a generated home; None for other homes."""
+    head, *numbers = name.split("_")
+    if head != "home" or len(numbers) != 2 or not all(each.isdecimal() for each in numbers):
+        return None
+    return int(numbers[0]), int(numbers[1])
 
 
 def share_of(text: str) -> str:
