@@ -6,6 +6,7 @@ from functools import reduce
 from operator import or_
 from typing import Any
 
+from hearth.challenges.instruction_object_names import label
 from hearth.challenges.instruction_writer import instruction
 from hearth.envs.json_observations import last_json
 from hearth.homes.geometry import footprint
@@ -149,9 +150,9 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
 
 
 def _thing(home: Home, node_id: int) -> list[Any]:
-    """Return the constant facts about a thing: class, panel, footprint on the plan."""
+    """Return the constant facts about a thing: class, panel, footprint on the plan, words for it."""
     node = home.node(home.index[node_id])
-    return [node.class_name, thing_group(node), _rect(node)]
+    return [node.class_name, thing_group(node), _rect(node), label(node.class_name)]
 
 
 def _rect(node: Node) -> list[float] | None:
@@ -239,7 +240,7 @@ def goal_words(literal: Any, home: Home) -> str:
     """Return a literal of a goal for people: `Put plate on dining table`."""
     agent = bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
     said = (HOLDS, "ON") if agent else ("ON", "INSIDE")
-    if literal.negated or len(literal.terms) != 2 or literal.name not in said:
+    if literal.negated or len(literal.terms) != 2 or literal.name not in said or literal.target == AGENT:
         return instruction(Goal.of(literal), home.knowledge, terse=True)
     names = [_name(term, home) for term in literal.terms]
     if agent:
@@ -253,4 +254,4 @@ def _name(term: Any, home: Home) -> str:
     else:
         found = home.instances(term) if term.partition(":")[0] != AGENT else 0
         name = home.classes[lowest(found)] if found else term
-    return name.replace("_", " ")
+    return label(name)

@@ -17,8 +17,8 @@ export class State {
       this.things.clear();
       this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));
     }
-    for (const [id, [className, group, box]] of Object.entries(message.things)) {
-      this.things.set(Number(id), { id: Number(id), className, group, box, seen: false });
+    for (const [id, [className, group, box, words]] of Object.entries(message.things)) {
+      this.things.set(Number(id), { id: Number(id), className, words, group, box, seen: false });
     }
     for (const [id, [room, relation, holder, states, close]] of Object.entries(message.changed)) {
       Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });

@@ -8,8 +8,8 @@ const PUTS = { PutBack: "on", PutIn: "in" };
 const CALLED = { character: "the other person", maindoor: "front door" };
 
 export function name(things, id) {
-  const found = things.get(id)?.className ?? "wall";
-  return CALLED[found] ?? found.replaceAll("_", " ");
+  const found = things.get(id);
+  return found ? (CALLED[found.className] ?? found.words) : "wall";
 }
 
 export function spoken(action, ids, things) {
