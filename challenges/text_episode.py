@@ -131,7 +131,7 @@ class TextEpisode:
         Raises:
             HearthError: BAD_ARGUMENT: not a whole number from 0 to `MOST_SEED`; no task of that index.
         """
-        number = _whole(seed, "seed", MOST_SEED)
+        number = checked_seed(seed)
         if self._home is not None:
             if index is not None:
                 message = "`index` is given, and there are no tasks to choose from"
@@ -207,27 +207,36 @@ def home_opening(home: object, goal: object) -> HomeOpening:
     """Return the starts of episodes in one of our homes.
 
     Raises:
-        HearthError: UNKNOWN_HOME: the name is not one of our homes', and never read as a path; BAD_ARGUMENT: no goal,
-            or a goal that is too long; the faults of a goal's text.
+        HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no goal, or a goal that is too long; the faults of a goal's text.
     """
-    from hearth.homes.library import names
-
-    if not isinstance(home, str) or home not in names():
-        message = f"there is no home `{str(home)[:40]}`"
-        raise HearthError.of(Code.UNKNOWN_HOME, message, suggestion=f"one of {', '.join(names())}")
+    place = home_named(home)
     if not isinstance(goal, str) or not goal.strip() or len(goal) > MOST_GOAL:
         message = f"`goal` is not a text of 1 to {MOST_GOAL:,} characters"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion='"HOLDS(agent, milk)"')
-    return _opening(home, goal)
+    return _opening(place, goal)
 
 
 @lru_cache(maxsize=256)
-def _opening(home: str, goal: str) -> HomeOpening:
-    return opening(_home_named(home), goal, agents=1)
+def _opening(home: Home, goal: str) -> HomeOpening:
+    return opening(home, goal, agents=1)
+
+
+def home_named(name: object) -> Home:
+    """Return one of our homes for a stranger: the name is never read as a path.
+
+    Raises:
+        HearthError: UNKNOWN_HOME.
+    """
+    from hearth.homes.library import names
+
+    if not isinstance(name, str) or name not in names():
+        message = f"there is no home `{str(name)[:40]}`"
+        raise HearthError.of(Code.UNKNOWN_HOME, message, suggestion=f"one of {', '.join(names())}")
+    return _home(name)
 
 
 @lru_cache(maxsize=16)
-def _home_named(name: str) -> Home:
+def _home(name: str) -> Home:
     """Return a home once for all episodes in it, which then share its words and ways."""
     from hearth.homes.library import named_graph
     from hearth.kb.loading.load import default
@@ -262,6 +271,15 @@ def text_tasks(source: str) -> tuple[Task, ...]:
         message = f"`{source[:80]}` draws all tasks, a second each"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"{source[:80]}:20")
     return suite(name, split, limit=int(number) if number else None).tasks
+
+
+def checked_seed(value: object) -> int:
+    """Return the seed of a stranger.
+
+    Raises:
+        HearthError: BAD_ARGUMENT.
+    """
+    return _whole(value, "seed", MOST_SEED)
 
 
 def _whole(value: object, name: str, most: int) -> int:

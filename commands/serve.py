@@ -58,7 +58,7 @@ def serve(
     from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    proxy, hosts = _proxy(proxy, public), _hosts(public)
+    proxy, hosts = proxy_of(proxy, public), public_hosts(public)
     if text:
         _refuse_options_of_rooms(store, study, films)
         _serve_text(port, out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
@@ -96,28 +96,27 @@ def _serve_text(
     from hearth.challenges.text_episode import text_tasks
     from hearth.web.desk_access import desk_token
     from hearth.web.serving import listening, run
-    from hearth.web.sessions import digest
     from hearth.web.text.open_worlds import Offered
     from hearth.web.text.text_door import TextDoor, text_application
 
     tasks, limit, worlds, workers = play
     text_tasks(tasks)  # a source that is wrong is said before anybody asks
     token = desk_token(out) if hosts else ""
-    door = TextDoor(Offered(tasks, limit), workers, worlds, digest(token) if token else "")
+    door = TextDoor(Offered(tasks, limit), workers, worlds)
     where = listening(port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     lines = f"Hearth plays in text at {address}"
     lines += f"\nEvery request shows the token in {out}/.server/desk-token" if token else ""
     output.say(lines, {"address": address, "tasks": tasks, "worlds": worlds, "token": bool(token)}, as_json)
     sys.stdout.flush()
-    run(text_application(door, hosts), where, proxy)
+    run(text_application(door, hosts, token), where, proxy)
 
 
 _PUBLIC = re.compile(r"https://(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?|\[[0-9A-Fa-f:.]+\])(?::[0-9]{1,5})?")
 """A public address: a name as browsers send it, and a port. Links and headers are made of it."""
 
 
-def _hosts(public: str) -> tuple[str, ...]:
+def public_hosts(public: str) -> tuple[str, ...]:
     """Return the name in a public address, with its port if it is not that of https.
 
     Raises:
@@ -137,7 +136,7 @@ def _hosts(public: str) -> tuple[str, ...]:
     return (f"{name}:{port}" if port not in (None, 443) else name,)
 
 
-def _proxy(given: str, public: str) -> str:
+def proxy_of(given: str, public: str) -> str:
     """Return the address of the proxy, as sockets have it.
 
     Raises:

@@ -4,9 +4,11 @@ import errno
 
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
+from starlette.responses import Response
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.web.room_request import json_answer
 from hearth.web.web_errors import WebError
 
 NO_MORE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -30,3 +32,12 @@ def fault_of(error: Exception) -> WebError:
     if isinstance(error, OperationalError):
         return WebError(Code.MISSING_FILE, "store", "a store that can be used", "one that can't be, see the log")
     return WebError(Code.INTERNAL_ERROR, "server", "an answer", "an error in Hearth, not in your request")
+
+
+def refusal(error: Exception) -> Response:
+    """Return the answer to a program's request that is refused: JSON, with the status of its fault."""
+    fault = fault_of(error)
+    answer = json_answer(fault.as_json(), error.status_code if isinstance(error, HTTPException) else fault.status)
+    if fault.code is Code.TIMED_OUT:  # what is left of a body is not waited for
+        answer.headers["Retry-After"], answer.headers["Connection"] = "2", "close"
+    return answer

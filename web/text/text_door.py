@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import hmac
 import secrets
 import time
 from collections.abc import Awaitable, Callable, Collection, Mapping
@@ -19,16 +18,15 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from hearth.schemas.failures import Code
 from hearth.version import VERSION
-from hearth.web.errors_as_faults import fault_of
+from hearth.web.errors_as_faults import refusal
 from hearth.web.limits import MOST_FIELDS, MOST_MESSAGE, Rate, usual_rates
 from hearth.web.messages import json_object, text_field
 from hearth.web.request_body import body_of
-from hearth.web.room_request import json_answer
 from hearth.web.security import Security
 from hearth.web.sender_addresses import sender_of
-from hearth.web.sessions import digest
 from hearth.web.text.engine_process import EngineProcess, lost
 from hearth.web.text.open_worlds import Offered
+from hearth.web.token_gate import TokenGate
 from hearth.web.web_errors import WebError
 
 IDLE_SECONDS = 900.0
@@ -67,7 +65,6 @@ class TextDoor:
         offered: the episodes that they may begin.
         engines: processes that play them.
         most: worlds that may be open at once.
-        token: digest of the token that every request must show; "" for none.
         rates: limits on the rate of requests; the usual ones if None.
         idle: seconds after which a world is closed.
     """
@@ -77,12 +74,11 @@ class TextDoor:
         offered: Offered,
         engines: int,
         most: int,
-        token: str = "",
         rates: Mapping[str, Rate] | None = None,
         idle: float = IDLE_SECONDS,
     ) -> None:
         self._engines = [EngineProcess(offered) for _ in range(engines)]
-        self._offered, self._most, self._token, self._idle = offered, most, token, idle
+        self._offered, self._most, self._idle = offered, most, idle
         self._rates = rates or usual_rates()
         self._worlds: dict[str, _World] = {}
         one = frozenset({"id"})
@@ -139,7 +135,6 @@ class TextDoor:
     async def _answered(self, request: Request) -> Response:
         try:
             address = self._address(request)
-            self._allowed(request)
             fields = await _fields(request)
             if unknown := sorted(fields.keys() - address.fields):
                 expected = f"no fields but {', '.join(sorted(address.fields)) or 'none'}"
@@ -148,7 +143,7 @@ class TextDoor:
                 self._rates["create"].check(sender_of(request), "/create")
             return Response(await address.answer(fields), media_type="application/json")
         except Exception as error:
-            return _refusal(error)
+            return refusal(error)
 
     def _address(self, request: Request) -> _Address:
         found = self._addresses.get(request.url.path)
@@ -157,15 +152,6 @@ class TextDoor:
         if request.method not in found.methods.split():
             raise HTTPException(405)
         return found
-
-    def _allowed(self, request: Request) -> None:
-        """Refuse a request without the token, where there is one."""
-        if not self._token:
-            return
-        kind, _, given = request.headers.get("authorization", "").partition(" ")
-        if kind.lower() != "bearer" or not hmac.compare_digest(digest(given), self._token):
-            self._rates["token"].check(sender_of(request), "Authorization")
-            raise WebError(Code.NOT_ALLOWED, "Authorization", "`Bearer` and the server's token", "none, or another")
 
     def _world(self, fields: Fields) -> tuple[str, _World]:
         """Return the world of a request.
@@ -271,15 +257,6 @@ async def _fields(request: Request) -> Fields:
     return json_object(body, "body") if body.strip() else {}
 
 
-def _refusal(error: Exception) -> Response:
-    """Return the answer to a request that is refused."""
-    fault = fault_of(error)
-    answer = json_answer(fault.as_json(), error.status_code if isinstance(error, HTTPException) else fault.status)
-    if fault.code is Code.TIMED_OUT:
-        answer.headers["Retry-After"], answer.headers["Connection"] = "2", "close"
-    return answer
-
-
-def text_application(door: TextDoor, hosts: Collection[str] = ()) -> ASGIApp:
-    """Return the door behind the checks on every request of the other rooms: `Host`, `Origin`, headers."""
-    return Security(door, hosts)
+def text_application(door: TextDoor, hosts: Collection[str] = (), token: str = "") -> ASGIApp:
+    """Return the door behind the checks on every request of the other rooms, and behind a token if there is one."""
+    return Security(TokenGate(door, token) if token else door, hosts)
