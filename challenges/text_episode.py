@@ -98,6 +98,7 @@ class TextEpisode:
     ) -> None:
         self._turn: EpisodeTurn | None = None
         self._admissible: Sequence[str] = ()
+        self._expert = ""
         self._homes: TextHomes | None = None
         self._home: TextHome | None = None
         if tasks is None:
@@ -183,9 +184,21 @@ class TextEpisode:
         """
         return [] if self.turn.done else list(self._admissible)
 
+    @property
+    def expert(self) -> str:
+        """Return the next command of an agent that sees everything.
+
+        Raises:
+            HearthError: OUT_OF_ORDER: before `reset`; BAD_ARGUMENT: the episode was made without `expert=True`.
+        """
+        if self.turn and not self._expert:
+            message = "the episode has no expert"
+            raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="make it with `expert=True`")
+        return self._expert
+
     def _taken(self, text: str, info: dict[str, Any], reward: float, *, truncated: bool) -> EpisodeTurn:
         begun, before = info["ticks"] == 0, self._turn
-        self._admissible = info["admissible"]
+        self._admissible, self._expert = info["admissible"], info.get("expert", "")
         self._turn = EpisodeTurn(
             observation=text,
             reward=float(reward),

@@ -67,6 +67,8 @@ class SessionEpisodes:
         with self._lock:
             self._forget(session)
             if len(self._kept) >= self._most:
+                self._kept = {each: kept for each, kept in self._kept.items() if not kept.episode.turn.done}
+            if len(self._kept) >= self._most:
                 message = f"{self._most} episodes are open"
                 raise HearthError.of(Code.TOO_FAST, message, suggestion="try again when others have ended")
             self._kept[name] = _Kept(name, episode, session, time.monotonic())

@@ -92,3 +92,14 @@ def test_what_is_out_of_order_is_said():
 
 def test_a_source_names_its_tasks():
     assert [task.id for task in text_tasks("wah:train:3")] == [task.id for task in tasks("wah", "train", limit=3)]
+
+
+def test_an_expert_reaches_the_goal_where_one_is_asked_for():
+    episode = TextEpisode("maple", "ON(milk, table)", expert=True)
+    turn = episode.reset(2)
+    while not turn.done:
+        turn = episode.step(episode.expert)
+    assert turn.won
+    plain = TextEpisode("maple", "ON(milk, table)")
+    plain.reset(2)
+    assert code_of(lambda: plain.expert) == "BAD_ARGUMENT"
