@@ -56,18 +56,24 @@ def reached() -> Scorer:
 
 @task
 def household(
-    tasks: str = "wah:test-1", home: str = "", goal: str = "", episodes: int = 20, limit: int = 250, turns: int = 50
+    tasks: str = "wah:test-1",
+    home: str = "",
+    goal: str | list[str] = "",
+    episodes: int = 20,
+    limit: int = 250,
+    turns: int = 50,
 ) -> Task:
     """Return episodes of a source of tasks, or of a home with a goal.
 
     Args:
         tasks: CHALLENGE:SPLIT, with :N for the first N tasks, or a file of `hearth challenge tasks`.
         home: the name of a home, with a goal.
-        goal: in that home.
+        goal: in that home; the command line takes a goal apart at its commas, so a list is put together again.
         episodes: how many, each with a seed of its own.
         limit: ticks of an episode.
         turns: commands of an episode.
     """
+    goal = goal if isinstance(goal, str) else ",".join(goal)
     given = {"home": home, "goal": goal} if home or goal else {"tasks": tasks}
     hearth.TextEpisode(**given)  # what is wrong is said before the first sample
     rows = [

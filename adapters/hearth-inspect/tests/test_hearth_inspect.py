@@ -16,6 +16,16 @@ import hearth
 sys.path.append(str(Path(__file__).parents[2]))
 from chat_endpoint import MILK, endpoint
 
+COMMAND = """
+import sys
+from inspect_ai._cli.main import main
+from inspect_ai.model import _model
+
+_model.count_text_tokens = lambda text: len(text) // 4
+main()
+"""
+"""The command `inspect`; what counts tokens would fetch a table from the network, even for the mock."""
+
 HOLD = {"home": "maple", "goal": "HOLDS(agent, milk)"}
 
 
@@ -66,7 +76,7 @@ def test_seeds_repeat_and_sixty_four_play_at_once(tmp_path):
 
 
 def test_the_command_with_the_mock_and_with_a_local_endpoint(tmp_path):
-    command = [str(Path(sys.executable).with_name("inspect")), "eval", "hearth_inspect/household", "--display", "none"]
+    command = [sys.executable, "-c", COMMAND, "eval", "hearth_inspect/household", "--display", "none"]
     command += ["-T", "home=maple", "-T", f"goal={HOLD['goal']}", "-T", "episodes=5", "-T", "turns=6"]
     with endpoint() as address:
         env = {**os.environ, "LOCAL_API_KEY": "none", "LOCAL_BASE_URL": address}
@@ -86,7 +96,7 @@ def test_the_command_with_the_mock_and_with_a_local_endpoint(tmp_path):
     [
         ({"home": "castle", "goal": "HOLDS(agent, milk)"}, "UNKNOWN_HOME"),
         ({"home": "maple"}, "BAD_ARGUMENT"),
-        ({"home": "maple", "goal": "HOLDS("}, "HOLDS"),
+        ({"home": "maple", "goal": "HOLDS("}, "SYNTAX"),
         ({"tasks": "wah:nowhere"}, "BAD_ARGUMENT"),
     ],
 )

@@ -42,23 +42,29 @@ def model(size):
 
 
 class Playing(HearthEnv):
-    """An environment that plays its commands itself as it is scored: a random model calls no tool."""
+    """An environment that plays its commands itself before it is scored: a random model calls no tool.
 
-    scored: ClassVar[list] = []
+    Every second one gives up early, so that a group has something to learn from.
+    """
 
-    def get_reward(self):
-        for command in MILK:
-            if not self._episode.turn.done:
-                self._act(command)
-        Playing.scored.append((self._seed, super().get_reward()))
-        return Playing.scored[-1][1]
+    made: ClassVar[list] = []
+
+    def __init__(self):
+        super().__init__()
+        self._commands = MILK[: 4 - 2 * (len(Playing.made) % 2)]
+        self._scores = []
+        Playing.made.append(self)
 
     def reset(self, **row):
         self._seed = row["seed"]
         return super().reset(**row)
 
-    def _act(self, command):
-        return HearthEnv.act(self, command)
+    def get_reward(self):
+        for command in self._commands:
+            if not self._episode.turn.done:
+                HearthEnv.act(self, command)
+        self._scores.append((self._seed, super().get_reward()))
+        return self._scores[-1][1]
 
 
 def trained(tmp_path, factory):
@@ -80,19 +86,20 @@ def trained(tmp_path, factory):
 
 
 def test_one_grpo_step_with_the_rewards_of_the_engine(tmp_path):
-    Playing.scored.clear()
+    Playing.made.clear()
     trainer, moved = trained(tmp_path, Playing)
+    scores = [score for env in Playing.made for score in env._scores]
+    for env in Playing.made:
+        for seed, reward in env._scores:
+            episode = hearth.TextEpisode(**HOLD, limit=60)
+            turn = episode.reset(seed)
+            for command in env._commands:
+                turn = turn if turn.done else episode.step(command)
+            assert reward == turn.goal_fraction
+    assert len(scores) == 4 and {reward for _, reward in scores} == {0.0, 1.0}
     log = next(entry for entry in trainer.state.log_history if "reward" in entry)
-    for seed, reward in Playing.scored:
-        episode = hearth.TextEpisode(**HOLD, limit=60)
-        turn = episode.reset(seed)
-        for command in MILK:
-            turn = turn if turn.done else episode.step(command)
-        assert reward == turn.goal_fraction
-    assert len(Playing.scored) == 4 and len({reward for _, reward in Playing.scored}) == 2
-    assert moved
-    assert log["reward"] == pytest.approx(sum(reward for _, reward in Playing.scored) / 4)
-    assert log["rewards/Playing/mean"] == pytest.approx(log["reward"])
+    assert log["reward"] == log["rewards/Playing/mean"] == pytest.approx(sum(reward for _, reward in scores) / 4)
+    assert moved, "the step changes the model"
     assert [tool.__name__ for tool in trainer.tools] == ["act"]
 
 
