@@ -12,6 +12,26 @@ MILK = ("Walk kitchen", "Walk fridge", "Open fridge", "Grab milk 142")
 """Commands that reach `HOLDS(agent, milk)` in maple from the start of seed 4."""
 
 
+def whole(text: str) -> bytes:
+    """Return an answer in one piece."""
+    choice = {"index": 0, "message": {"role": "assistant", "content": text}, "finish_reason": "stop"}
+    usage = {"prompt_tokens": 1, "completion_tokens": 1, "total_tokens": 2}
+    facts = {"id": "answer", "object": "chat.completion", "created": 0, "model": "tiny"}
+    return json.dumps({**facts, "choices": [choice], "usage": usage}).encode()
+
+
+def streamed(text: str) -> bytes:
+    """Return an answer as events, for clients that ask for a stream."""
+    facts = {"id": "answer", "object": "chat.completion.chunk", "created": 0, "model": "tiny"}
+    usage = {"prompt_tokens": 1, "completion_tokens": 1, "total_tokens": 2}
+    parts = [
+        {**facts, "choices": [{"index": 0, "delta": {"role": "assistant", "content": text}, "finish_reason": None}]},
+        {**facts, "choices": [{"index": 0, "delta": {}, "finish_reason": "stop"}]},
+        {**facts, "choices": [], "usage": usage},
+    ]
+    return "".join(f"data: {json.dumps(part)}\n\n" for part in parts).encode() + b"data: [DONE]\n\n"
+
+
 @contextmanager
 def endpoint(commands: Sequence[str] = MILK) -> Iterator[str]:
     """Give the address of a server that speaks the chat protocol; the last command is repeated."""
@@ -20,15 +40,12 @@ def endpoint(commands: Sequence[str] = MILK) -> Iterator[str]:
         def do_POST(self) -> None:
             asked = json.loads(self.rfile.read(int(self.headers["content-length"])))
             turn = sum(message["role"] == "assistant" for message in asked["messages"])
-            said = {"role": "assistant", "content": commands[min(turn, len(commands) - 1)]}
-            answer = {
-                "id": "answer", "object": "chat.completion", "created": 0, "model": asked["model"],
-                "choices": [{"index": 0, "message": said, "finish_reason": "stop"}],
-                "usage": {"prompt_tokens": 1, "completion_tokens": 1, "total_tokens": 2},
-            }  # fmt: skip
-            body = json.dumps(answer).encode()
+            text = commands[min(turn, len(commands) - 1)]
+            kind, body = (
+                ("text/event-stream", streamed(text)) if asked.get("stream") else ("application/json", whole(text))
+            )
             self.send_response(200)
-            self.send_header("Content-Type", "application/json")
+            self.send_header("Content-Type", kind)
             self.send_header("Content-Length", str(len(body)))
             self.end_headers()
             self.wfile.write(body)

@@ -33,11 +33,11 @@ ALONE = "alone"
 
 @dataclass(frozen=True)
 class Turn:
-    """What you see after a command, and how far the goal is reached.
+    """Your observation after a command, and your progress towards the goal.
 
     Attributes:
         episode: the name of the episode.
-        observation: your goal, what you see, and commands that make sense now.
+        observation: your goal, your surroundings, and commands that make sense now.
         reward: of the last command.
         done: no command can follow.
         won: the goal is reached.
@@ -88,7 +88,7 @@ class HearthTools:
     async def act(self, command: str, ctx: Context, episode: str = "") -> Turn:
         """Do one command in the home, such as `Walk kitchen`, `Open fridge 137`, `Grab milk 142`, and see what follows.
 
-        A command that cannot be done is refused: `fault` says why, and what to do instead.
+        A command that cannot be done is refused: `fault` has the reason and the remedy.
         """
         return await self._worked("world", self._acted, self._session(ctx), episode, command)
 

@@ -51,7 +51,7 @@ class _World:
 
 @dataclass(frozen=True)
 class _Address:
-    """An address: its methods, the fields that a request may have, and what answers it."""
+    """An address: its methods, the fields that a request may have, and the function that answers it."""
 
     methods: str
     fields: frozenset[str]

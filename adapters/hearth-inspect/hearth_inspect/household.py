@@ -18,7 +18,7 @@ METRICS = {
     "ticks": [mean()],
     "turn": [mean()],
 }
-"""Whether the goal was reached, its part that was, the engine's reward, refused commands, ticks and commands."""
+"""Measures of an episode: success, the part of the goal, the engine's reward, refused commands, ticks, commands."""
 
 
 @solver

@@ -88,8 +88,8 @@ def test_seeds_repeat_and_sixty_four_play_at_once(address):
     [
         ({"home": "castle", "goal": "x"}, "UNKNOWN_HOME"),
         ({"home": "maple"}, "BAD_ARGUMENT"),
-        ({"seed": "many"}, "valid"),
-        ({"seed": -1}, "greater"),
+        ({"seed": "many"}, "seed"),
+        ({"seed": -1}, "seed"),
         ({"seed": 2**63}, "BAD_ARGUMENT"),
         ({"color": "red"}, "BAD_ARGUMENT"),
     ],

@@ -43,7 +43,7 @@ def evaluated(folder, address, count, turns=6):
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     (file,) = Path(folder).rglob("traces.jsonl")
-    return [json.loads(line) for line in file.read_text().splitlines()]
+    return [trace for line in file.read_text().splitlines() for trace in json.loads(line)["traces"]]
 
 
 def facts(trace):
