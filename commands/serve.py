@@ -21,6 +21,11 @@ def serve(
     films: Path | None = None,
     public: str = "",
     proxy: str = "",
+    text: bool = False,
+    tasks: str = "wah:train",
+    limit: int = 250,
+    worlds: int = 200,
+    workers: int = 2,
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
@@ -31,12 +36,16 @@ def serve(
     whose token is also in DIR/.server/desk-token. Ctrl-C stops it; accepted contributions are kept, also if it is
     killed.
 
+    With --text there are no rooms: programs create, reset and step worlds in text, over HTTP (docs/hubs.md). Nothing is
+    kept. With --public, too, every request must show the desk's token.
+
     \b
     Examples:
       hearth serve
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
       hearth serve --public https://homes.example.org --proxy 127.0.0.1
+      hearth serve --text --tasks wah:train
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
@@ -49,7 +58,11 @@ def serve(
     from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    proxy, hosts = _proxy(proxy, public), _hosts(public)
+    proxy, hosts = proxy_of(proxy, public), public_hosts(public)
+    if text:
+        _refuse_options_of_rooms(store, study, films)
+        _serve_text(port, out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
+        return
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
@@ -69,11 +82,41 @@ def serve(
     run(app, where, proxy)
 
 
+def _refuse_options_of_rooms(*given: object) -> None:
+    """Refuse options of the rooms, which `--text` does not open."""
+    if any(given):
+        message = "--store, --study and --films are of the rooms for people"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out --text, or these")
+
+
+def _serve_text(
+    port: int, out: Path, hosts: tuple[str, ...], proxy: str, play: tuple[str, int, int, int], as_json: bool
+) -> None:
+    """Serve worlds in text until interrupted."""
+    from hearth.challenges.text_episode import text_tasks
+    from hearth.web.desk_access import desk_token
+    from hearth.web.serving import listening, run
+    from hearth.web.text.open_worlds import Offered
+    from hearth.web.text.text_door import TextDoor, text_application
+
+    tasks, limit, worlds, workers = play
+    text_tasks(tasks)  # a source that is wrong is said before anybody asks
+    token = desk_token(out) if hosts else ""
+    door = TextDoor(Offered(tasks, limit), workers, worlds)
+    where = listening(port)
+    address = f"http://127.0.0.1:{where.getsockname()[1]}"
+    lines = f"Hearth plays in text at {address}"
+    lines += f"\nEvery request shows the token in {out}/.server/desk-token" if token else ""
+    output.say(lines, {"address": address, "tasks": tasks, "worlds": worlds, "token": bool(token)}, as_json)
+    sys.stdout.flush()
+    run(text_application(door, hosts, token), where, proxy)
+
+
 _PUBLIC = re.compile(r"https://(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?|\[[0-9A-Fa-f:.]+\])(?::[0-9]{1,5})?")
 """A public address: a name as browsers send it, and a port. Links and headers are made of it."""
 
 
-def _hosts(public: str) -> tuple[str, ...]:
+def public_hosts(public: str) -> tuple[str, ...]:
     """Return the name in a public address, with its port if it is not that of https.
 
     Raises:
@@ -93,7 +136,7 @@ def _hosts(public: str) -> tuple[str, ...]:
     return (f"{name}:{port}" if port not in (None, 443) else name,)
 
 
-def _proxy(given: str, public: str) -> str:
+def proxy_of(given: str, public: str) -> str:
     """Return the address of the proxy, as sockets have it.
 
     Raises:
