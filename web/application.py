@@ -28,6 +28,7 @@ from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
 from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
+from hearth.web.phrases import refused, say
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
@@ -108,6 +109,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.globals["say"], made.globals["refused"] = say, refused
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made
@@ -256,6 +258,11 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     return answer
 
 
+def _address(asked: Request) -> str:
+    """Return the address that was asked for, with what its link says, such as a platform's ids."""
+    return asked.url.path + (f"?{asked.url.query}" if asked.url.query and asked.method == "GET" else "")
+
+
 def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Response:
     status = error.status_code if isinstance(error, HTTPException) else fault.status
     if not by_browser(asked):
@@ -263,6 +270,8 @@ def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Res
     if fault.instead:
         return RedirectResponse(fault.instead, 303)
     begins = fault.code is Code.NO_SESSION
-    back, lost = (asked.url.path if begins else "/"), begins and bool(token_of(asked))
-    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost)
-    return HTMLResponse(page, status)
+    back, lost = (_address(asked) if begins else "/"), begins and bool(token_of(asked))
+    desk = asked.url.path.startswith("/desk")
+    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost, desk=desk)
+    comes = begins and not lost and asked.method in ("GET", "HEAD")  # a newcomer has done nothing wrong
+    return HTMLResponse(page, 200 if comes else status)
