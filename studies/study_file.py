@@ -224,7 +224,7 @@ def _question(entry: Any, faults: Faults) -> Question:
     if not isinstance(entry, located_yaml.Mapping) or "correct" not in entry:
         return made
     given = entry["correct"]
-    right = int(given) if made.kind == "scale" and isinstance(given, located_yaml.Number) else given
+    right = int(given) if isinstance(given, located_yaml.Number) and float(given).is_integer() else given
     if made.kind == "text" or made.fault(right):
         remedy = f"{made.low} to {made.high}" if made.kind == "scale" else "one of `choices`"
         faults.add(Code.BAD_ARGUMENT, "`correct` is no answer to the question", entry.at("correct"), remedy)

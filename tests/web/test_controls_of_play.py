@@ -8,6 +8,9 @@ import pytest
 from web.people import accessibility
 from web.used_controls import NARROW, WIDE, Record, fits, go, press, press_shape
 
+from hearth.challenges.household import household_task
+from hearth.schemas.spoken_words import spoken
+
 pytestmark = [pytest.mark.tools, pytest.mark.parametrize("width", [WIDE, NARROW])]
 
 
@@ -154,6 +157,27 @@ def test_things_are_found_and_chosen_in_lists_and_on_the_plan(page):
     assert accessibility(page) == []
 
 
+def test_a_broken_ban_is_said(page):
+    task = next(found for n in range(40) if (found := household_task(f"household-train-{n:05d}")).family == "without")
+    name = spoken(task.goal.parts[0].goals[0].counts[0][0].terms[0])
+    begin(page, "household", id=task.id, sees="full")
+    ban = page.locator("#goal li", has_text=f"Never open the {name}")
+    assert "kept so far" in ban.inner_text()
+    at = f'#game .lists button.thing[data-id="{thing(page, name).first.get_attribute("data-id")}"]'
+    if not page.locator(f"{at}.close").count():
+        press(page, at)
+        press(page, page.locator("#menu-actions").get_by_text("Go all the way", exact=True))
+        page.locator(f"{at}.close").wait_for()
+        _settled(page)
+    press(page, at)
+    press(page, page.locator("#menu-actions [data-instruction^=Open]"))
+    page.locator("#banner", has_text="can't be reached any longer").wait_for()
+    assert "broken" in ban.inner_text() and accessibility(page) == []
+    press(page, "#finish")
+    press(page, page.locator("#sure").get_by_role("button", name="Finish"))
+    page.locator("#banner", has_text="something was done that the task forbids").wait_for()
+
+
 def test_a_game_is_kept_and_finished(page):
     begin(page)
     press(page, "#save")
@@ -231,9 +255,10 @@ def test_an_unknown_task_leads_back_to_the_form(page):
 
 
 def test_no_control_of_play_is_without_a_test(records, width):
-    """Also: no button of all these tests changed nothing."""
+    """Also: no button of all these tests changed nothing, and nobody reads what is for developers."""
     tests = {name for name in globals() if name.startswith("test_")} - {"test_no_control_of_play_is_without_a_test"}
     if missing := tests - records[width].ran:
         pytest.skip(f"not run, or failed: {', '.join(sorted(missing))}")
     assert [each for each in records[width].unused() if each.startswith("/play/")] == []
     assert sorted(records[width].dead) == []
+    assert sorted(records[width].read) == []

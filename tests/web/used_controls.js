@@ -25,8 +25,19 @@
     return { page: inHead ? "every page" : folded(location.pathname), control: named(control) };
   }
 
+  const DEVELOPERS = /\b[A-Z]{2,}_[A-Z_]+\b|\b[A-Za-z]+_[a-z_]+\b|\[[A-Z][a-z]+\]|<[a-z_]+> \(/g;
+  const read = new Set();
+  function readAll() {
+    const text = document.querySelector("main")?.innerText ?? "";
+    for (const [word] of location.pathname.startsWith("/desk") ? [] : text.matchAll(DEVELOPERS)) {
+      if (!read.has(word)) window.hearthRead(folded(location.pathname), word);
+      read.add(word);
+    }
+  }
+
   const seen = new Set();
   function look() {
+    readAll();
     for (const control of document.querySelectorAll(CONTROLS)) {
       const [{ page, control: name }, shown] = [told(control), control.checkVisibility() || control.matches("a.skip")];
       if (!shown || control.disabled || seen.has(`${page} ${name}`)) continue;

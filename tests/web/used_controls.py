@@ -26,6 +26,7 @@ class Record:
         seen: every control that a page showed, enabled.
         used: those that were clicked, touched, typed into or chosen from.
         dead: the buttons that changed nothing.
+        read: words of people's pages that are for developers: codes, names of classes and fields, steps in brackets.
         faults: errors that a page did not catch, refused requests, and what consoles said of errors.
         ran: the names of the tests that recorded.
     """
@@ -33,6 +34,7 @@ class Record:
     seen: set[Control] = field(default_factory=set)
     used: set[Control] = field(default_factory=set)
     dead: set[Control] = field(default_factory=set)
+    read: set[Control] = field(default_factory=set)
     faults: list[str] = field(default_factory=list)
     ran: set[str] = field(default_factory=set)
 
@@ -52,7 +54,7 @@ class Record:
         """
         touched = {"has_touch": True, "is_mobile": True} if width == NARROW else {}
         context = browser.new_context(viewport={"width": width, "height": 900}, **touched, **options)
-        for name, found in (("Saw", self.seen), ("Used", self.used), ("Dead", self.dead)):
+        for name, found in (("Saw", self.seen), ("Used", self.used), ("Dead", self.dead), ("Read", self.read)):
             context.expose_binding(f"hearth{name}", lambda _, page, control, found=found: found.add((page, control)))
         context.add_init_script(path=SCRIPT)
         faults: list[str] = []

@@ -1,6 +1,5 @@
 """The desk of a study: how far people are, who has left, tables and report, deletion on request."""
 
-import csv
 import io
 import time
 from collections import Counter
@@ -9,6 +8,7 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
+from hearth.storage.csv_files import rows_writer
 from hearth.studies.events import PLACES
 from hearth.studies.participant_flags import FLAGS, came, flags
 from hearth.studies.study_findings import findings
@@ -81,13 +81,12 @@ def _platform_id(conduct: Conduct, person: str) -> str:
 def payments(visit: Visit) -> Response:
     """Return a table by which people are paid: the code, the id at the platform, how far they are, and the flags."""
     written = io.StringIO()
-    rows = csv.writer(written)
-    rows.writerow(("code", "platform_id", "stage", "trials", "minutes", "flags"))
+    write = rows_writer(written)
+    write([("code", "platform_id", "stage", "trials", "minutes", "flags")])
     conduct = conduct_here(visit.web)
-    for each in _people(conduct):
-        if each["id"]:
-            flagged = " ".join(each["flags"])
-            rows.writerow((each["id"], each["came"], each["stage"], each["trials"], each["minutes"], flagged))
+    people = [each for each in _people(conduct) if each["id"]]
+    columns = ("id", "came", "stage", "trials", "minutes")
+    write([*(each[name] for name in columns), " ".join(each["flags"])] for each in people)
     return _file(written.getvalue().encode(), "text/csv", f"{conduct.study.name}-payments.csv")
 
 
