@@ -21,10 +21,11 @@ def serve(
     films: Path | None = None,
     public: str = "",
     proxy: str = "",
+    host: str = "127.0.0.1",
     kb: Path | None = None,
     as_json: bool = False,
 ) -> None:
-    """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
+    """Serve the rooms for people, and the researcher's desk, on 127.0.0.1 or on --host behind a proxy.
 
     Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
     share. `build DIR` reads the contributions that other people accepted. Prints the address and the link to the desk,
@@ -37,6 +38,7 @@ def serve(
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
       hearth serve --public https://homes.example.org --proxy 127.0.0.1
+      hearth serve --public https://homes.example.org --host 10.0.0.5 --proxy 10.0.0.2
     """
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
@@ -50,11 +52,12 @@ def serve(
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
     proxy, hosts = _proxy(proxy, public), _hosts(public)
+    host = _host(host, public)
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
-    where = listening(port)
-    address = f"http://127.0.0.1:{where.getsockname()[1]}"
+    where = listening(port, host)
+    address = f"http://{f'[{host}]' if ':' in host else host}:{where.getsockname()[1]}"
     token = desk_token(out)
     kept = Store(store or default_url(out))
     app = application(kept, read_knowledge(kb), out, token, study, films, hosts)
@@ -91,6 +94,25 @@ def _hosts(public: str) -> tuple[str, ...]:
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="https://NAME or https://NAME:PORT")
     name = f"[{name}]" if ":" in name else name  # as browsers ask for an address of IPv6
     return (f"{name}:{port}" if port not in (None, 443) else name,)
+
+
+def _host(given: str, public: str) -> str:
+    """Return the address of this machine to listen on.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is not an IP address; or other machines reach it, and people do not come by the
+            https of a proxy, so that what they send could be read on its way.
+    """
+    try:
+        found = ip_address(given)
+    except ValueError:
+        message = f"`{given[:60]}` is not an IP address of this machine"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--host 127.0.0.1, or 0.0.0.0 for all") from None
+    if not found.is_loopback and not public:
+        message = f"other machines reach {found} without https"
+        remedy = "name the proxy's address: --public https://NAME --proxy ADDRESS"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
+    return str(found)
 
 
 def _proxy(given: str, public: str) -> str:
