@@ -19,6 +19,7 @@ from hearth.schemas.spoken_words import spoken
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.goals import Progress
+from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import LastAction, View
@@ -167,8 +168,9 @@ def called(home: Home) -> tuple[str, ...]:
     """Return what people call each thing of a home: `mug 2` where there are several mugs."""
     names = [_called(home, i) for i in range(len(home.ids))]
     places: dict[str, list[int]] = {}
-    for i in indices(home.everything & ~home.absent & ~home.characters):
-        places.setdefault(names[i], []).append(i)
+    for i in indices(home.everything):
+        if home.node(i).category not in UNTOUCHED - {ROOM_CATEGORY}:  # nobody tells pieces of floor apart
+            places.setdefault(names[i], []).append(i)
     for same in places.values():
         for number, i in enumerate(same if len(same) > 1 else (), 1):
             names[i] += f" {number}"
