@@ -13,12 +13,14 @@ from urllib.parse import parse_qsl
 import jinja2
 from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from starlette.applications import Starlette
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from hearth.kb.knowledge import Knowledge
@@ -83,14 +85,31 @@ def application(
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
             routes += [_route(web, address, prefix) for address in addresses]
-    routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
-    routes.append(Mount("/fetched", _Fetched(directory=FETCHED, check_dir=False)))
+    routes.append(Mount("/static", _packed(StaticFiles(directory=HERE / "static"))))
+    routes.append(Mount("/fetched", _packed(_Fetched(directory=FETCHED, check_dir=False))))
     handlers: dict[Any, Any] = {
         kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, DBAPIError, OSError, Exception)
     }
     made = Starlette(routes=routes, exception_handlers=handlers)
     made.router.redirect_slashes = False  # it would send people to the `Host` that they asked for
     return Security(made, hosts)
+
+
+def _packed(files: StaticFiles) -> ASGIApp:
+    """Return files that are sent compressed, and that browsers keep: they ask whether a file is still the same.
+
+    Pages are not compressed: their length would tell what is secret in them beside what somebody else wrote.
+    """
+
+    async def kept(scope: Scope, receive: Receive, send: Send) -> None:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)["Cache-Control"] = "no-cache"
+            await send(message)
+
+        await files(scope, receive, sent)
+
+    return GZipMiddleware(kept, minimum_size=1_000, compresslevel=6)
 
 
 class _Fetched(StaticFiles):

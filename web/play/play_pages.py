@@ -1,6 +1,8 @@
 """The pages of Play: the games to choose from, a game, joining one, and the recorded episode."""
 
+import gzip
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any
 
 from starlette.responses import Response
@@ -180,7 +182,18 @@ def home_file(visit: Visit) -> Response:
     library("trimesh")
     from hearth.web.play.game_scene_3d import base_file
 
-    return _model(base_file(name, home, visit.web.known, visit.web.out / "homes"))
+    file = base_file(name, home, visit.web.known, visit.web.out / "homes")
+    if "gzip" not in visit.request.headers.get("accept-encoding", ""):
+        return _model(file)
+    answer = _model(_compressed(file))
+    answer.headers["Content-Encoding"], answer.headers["Vary"] = "gzip", "Accept-Encoding"
+    return answer
+
+
+@lru_cache(maxsize=8)
+def _compressed(data: bytes) -> bytes:
+    """Return a home's file compressed: a fifth of it goes over the network, at once for the next who asks."""
+    return gzip.compress(data, 6)
 
 
 def model_file(visit: Visit) -> Response:
