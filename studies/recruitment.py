@@ -17,7 +17,7 @@ _ADDRESS = re.compile(r"https://[A-Za-z0-9.-]+(?::[0-9]{1,5})?/[A-Za-z0-9_.~%/?&
 """A completion address: by https, of characters that need no quoting, with `{person}` and `{code}`."""
 
 FILLED = ("{person}", "{code}")
-"""What a completion address may have filled in."""
+"""The places of a completion address that are filled in."""
 
 
 @dataclass(frozen=True, slots=True)

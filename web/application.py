@@ -98,7 +98,7 @@ def application(
 def _packed(files: StaticFiles) -> ASGIApp:
     """Return files that are sent compressed, and that browsers keep: they ask whether a file is still the same.
 
-    Pages are not compressed: their length would tell what is secret in them beside what somebody else wrote.
+    Pages are not compressed: the length of a compressed page betrays its secrets to a person who writes a part of it.
     """
 
     async def kept(scope: Scope, receive: Receive, send: Send) -> None:
@@ -278,7 +278,7 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
 
 
 def _address(asked: Request) -> str:
-    """Return the address that was asked for, with what its link says, such as a platform's ids."""
+    """Return the requested address with its query, such as the ids of a platform."""
     return asked.url.path + (f"?{asked.url.query}" if asked.url.query and asked.method == "GET" else "")
 
 

@@ -12,7 +12,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.yaml_limits import packaged
 
 NOT_FOR_PEOPLE = re.compile(r"[`_]|\b[A-Z]{3,}\b|--\w")
-"""What only developers read: codes, names of classes and fields, options and commands."""
+"""Words for developers alone: codes, names of classes and fields, options and commands."""
 
 
 @cache
@@ -28,7 +28,7 @@ def say(part: str, name: str, **values: Any) -> str:
 
 
 def refused(code: Code, place: str = "", expected: str = "") -> str:
-    """Return the sentence about a refusal, with what one can do.
+    """Return the sentence about a refusal, with a remedy.
 
     Args:
         code: of the refusal.

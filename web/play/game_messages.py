@@ -157,7 +157,7 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
 
 
 def _thing(home: Home, node_id: int) -> list[Any]:
-    """Return the constant facts about a thing: class, panel, footprint on the plan, and what people call it."""
+    """Return the constant facts about a thing: class, panel, footprint on the plan, and name for people."""
     i = home.index[node_id]
     node = home.node(i)
     return [node.class_name, thing_group(node), _rect(node), called(home)[i]]

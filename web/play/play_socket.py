@@ -29,7 +29,7 @@ LOOKS_EVERY = {PERSON: 0.3}
 USUALLY = 2.0
 
 END_AFTER = 0.05
-"""Seconds after the end of a game's time at which its page is told."""
+"""Seconds after the end of a game's time at which its page learns of it."""
 
 LONGEST_ACT = 500
 """Characters of an instruction."""
