@@ -51,6 +51,30 @@ def usual_place(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tupl
     return None
 
 
+def usual_relation(class_name: str, holder: str, knowledge: Knowledge) -> str:
+    """Return whether a thing of a class is usually ON or INSIDE a holder of another class."""
+    for place in knowledge.placements(class_name):
+        if place.destination == holder and place.relation in ("ON", "IN"):
+            return "ON" if place.relation == "ON" else "INSIDE"
+    return "INSIDE" if knowledge.has(holder, "CAN_OPEN") else "ON"
+
+
+def states_with(states: Sequence[str], class_name: str, knowledge: Knowledge) -> list[str]:
+    """Return some states of a class, and for the rest its usual ones; [] where it can be in none of them."""
+    usual = knowledge.default_states(class_name)
+    own = [state for state in states if _can_be(state, class_name, usual, knowledge)]
+    groups = {knowledge.group_of(state) for state in own}
+    return [*own, *(state for state in usual if knowledge.group_of(state) not in groups)] if own else []
+
+
+def _can_be(state: str, class_name: str, usual: Sequence[str], knowledge: Knowledge) -> bool:
+    """Return whether a class can be in a state: a property says so, or it is usually in a state of that group."""
+    needs = {"OPEN": "CAN_OPEN", "CLOSED": "CAN_OPEN", "ON": "HAS_SWITCH", "OFF": "HAS_SWITCH"}.get(state)
+    if needs:
+        return knowledge.has(class_name, needs)
+    return knowledge.group_of(state) in {knowledge.group_of(each) for each in usual}
+
+
 def room_above(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
     """Return the first room on the way from a thing through its holders; None where there is none."""
     waiting, seen = [node], {node}

@@ -196,13 +196,7 @@ class _Reading:
         """Return the relation to a holder; where the file does not say which, that which is usual."""
         if self.knowledge.is_room(other.class_name):
             return "INSIDE"
-        if relation:
-            return relation
-        places = [p for p in self.knowledge.placements(entry.class_name) if p.destination == other.class_name]
-        for place in places:
-            if place.relation in ("ON", "IN"):
-                return "ON" if place.relation == "ON" else "INSIDE"
-        return "INSIDE" if self.knowledge.has(other.class_name, "CAN_OPEN") else "ON"
+        return relation or completion.usual_relation(entry.class_name, other.class_name, self.knowledge)
 
     def _graph(self, entries: Sequence[Entry], numbers: Mapping[int, int], edges: Sequence[Edge]) -> EnvironmentGraph:
         nodes = [self._node(entry, numbers[id(entry)]) for entry in entries]
@@ -211,12 +205,9 @@ class _Reading:
 
     def _node(self, entry: Entry, number: int) -> dict[str, Any]:
         node: dict[str, Any] = {"id": number, "class_name": entry.class_name}
-        known = self.knowledge.objects[entry.class_name]
-        by_default = self.knowledge.default_states(entry.class_name)
-        own = [state for state in entry.states if self._can_be(state, by_default, known.properties)]
-        groups = {self.knowledge.group_of(state) for state in own}
-        if own:
-            node["states"] = [*own, *(state for state in by_default if self.knowledge.group_of(state) not in groups)]
+        states = completion.states_with(entry.states, entry.class_name, self.knowledge)
+        if states:
+            node["states"] = states
         shaped = None if self.knowledge.is_room(entry.class_name) else form(entry.class_name, self.knowledge)
         size = entry.size or (shaped and shaped.size)
         if entry.place is not None and size and all(side > 0 for side in size) and self._is_of_a_home(entry, size):
@@ -232,13 +223,6 @@ class _Reading:
         message = f"{entry.class_name} lies {max(map(abs, entry.place)):g} m off or is {max(size):g} m long"
         self._leave(Code.BAD_GRAPH, message, entry.entity.path, "`scale:` of a mapping file: metres of a unit")
         return False
-
-    def _can_be(self, state: str, by_default: Sequence[str], properties: frozenset[str]) -> bool:
-        """Return whether a class can be in a state: a property says so, or it is usually in a state of that group."""
-        needs = {"OPEN": "CAN_OPEN", "CLOSED": "CAN_OPEN", "ON": "HAS_SWITCH", "OFF": "HAS_SWITCH"}.get(state)
-        if needs:
-            return needs in properties
-        return self.knowledge.group_of(state) in {self.knowledge.group_of(each) for each in by_default}
 
     def _note_units(self, entries: Sequence[Entry], units: Units) -> None:
         placed = [entry for entry in entries if entry.place is not None]
