@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hearth.homes.from_graph.graph_layout import lay_out
 from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
-from hearth.homes.geometry import Rect, bottom, box_over, footprint, top
+from hearth.homes.geometry import bottom, footprint, top
 from hearth.homes.lint import CHECKS, NEEDS_STATES, View
 from hearth.homes.object_shapes import Form, form
 from hearth.homes.relations import close, facing
@@ -227,31 +227,3 @@ def nearness(graph: EnvironmentGraph, knowledge: Knowledge) -> list[Edge]:
     had = {(edge.source, edge.relation, edge.target) for edge in graph.edges}
     edges = (Edge(things[one].line, relation, things[other].line) for relation, (one, other) in pairs)
     return sorted({edge for edge in edges if tuple(edge) not in had})
-
-
-def room_boxes(graph: EnvironmentGraph) -> dict[int, Box] | None:
-    """Return boxes of the rooms around the things in each; None where a room is empty or two of them overlap."""
-    rooms = [node.id for node in graph.nodes if node.category == ROOM_CATEGORY]
-    held: dict[int, list[Box]] = {room: [] for room in rooms}
-    boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
-    for edge in graph.edges:
-        if edge.relation == "INSIDE" and edge.target in held and edge.source in boxes:
-            held[edge.target].append(boxes[edge.source])
-    if not all(held.values()):
-        return None
-    floor = min(bottom(box) for each in held.values() for box in each)
-    found = {room: Rect.over(map(footprint, each)).inset(-MARGIN) for room, each in held.items()}
-    if any(found[one].overlap(found[other]) > 0 for one, other in _pairs(rooms)):
-        return None
-    return {room: box_over(rect, floor, floor + HEIGHT) for room, rect in found.items()}
-
-
-MARGIN = 0.6
-"""Metres of floor around the things of a room whose own size is not known."""
-
-HEIGHT = 2.6
-"""Metres from floor to ceiling of such a room."""
-
-
-def _pairs(rooms: Sequence[int]) -> Iterator[tuple[int, int]]:
-    return ((one, other) for number, one in enumerate(rooms) for other in rooms[:number])
