@@ -104,9 +104,9 @@ def pictures(graph: EnvironmentGraph, known: Knowledge, name: str, above: bool) 
 def write_sheet(views: list[tuple[Image, str]], path: Path) -> None:
     """Write views as one picture."""
     from hearth.rendering.film.contact_sheet import contact_sheet
-    from hearth.rendering.film.png import encoded
+    from hearth.rendering.film.png import encode
 
-    path.write_bytes(encoded(contact_sheet(views, "Rooms of iTHOR", columns=6)))
+    path.write_bytes(encode(contact_sheet(views, "Rooms of iTHOR", columns=6)))
 
 
 if __name__ == "__main__":

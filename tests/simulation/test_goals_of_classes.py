@@ -35,8 +35,15 @@ def test_goals_about_things_of_a_class(text, on, reached):
     assert read_instruction(instruction(goal, default(), 0), default()) == goal
 
 
-@pytest.mark.parametrize("text", ["forn x: plate. (ON(x, table))", "forn 2 x. (ON(x, table))", "forall x: plte. (ON(x, 1))",
-                                  "forpairs x: plate. (ON(x, table))"])  # fmt: skip
+BROKEN = (
+    "forn x: plate. (ON(x, table))",
+    "forn 2 x. (ON(x, table))",
+    "forall x: plte. (ON(x, 1))",
+    "forpairs x: plate. (ON(x, table))",
+)
+
+
+@pytest.mark.parametrize("text", BROKEN)
 def test_faults_of_goals_about_things_of_a_class_have_a_column(text):
     home = hearth.home("maple", default())
     with pytest.raises(hearth.HearthError) as raised:
