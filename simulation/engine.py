@@ -14,6 +14,7 @@ from hearth.simulation.actions.metric_checks import followed
 from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.motion.stride_ahead import kept_apart
 from hearth.simulation.processes import advanced, widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
@@ -194,6 +195,8 @@ def tick(
             result = alone if isinstance(alone, Failure) else _after_others(result, mine.action)
         if isinstance(result, Failure):
             failures[agent] = result
+        elif rules.bodies and mine.action in MOVES:
+            now = kept_apart(world, now, result, agent)
         else:
             now = result
     return advanced(world, now) if rules.consequences else now, failures

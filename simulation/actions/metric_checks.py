@@ -12,7 +12,8 @@ from hearth.simulation.actions.locomotion import arrived, destination, gone, nee
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import Here, ground_of
-from hearth.simulation.motion.stride_ahead import closed_doors, in_the_way, others_of, stride_ahead
+from hearth.simulation.motion.navigation import BODY_RADIUS
+from hearth.simulation.motion.stride_ahead import SHARES, SLACK, closed_doors, in_the_way, others_of, stride_ahead
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
@@ -41,7 +42,13 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         taken = ways.blocked(other.pose.point for other in others_of(world, number) if other.pose is not None)
         taken[ways.around(pose.x, pose.z)] = False
         without = tuple(sorted({*shut, *taken.nonzero()[0].tolist()}))
-        x, z, cell = ways.stepped(ways.detour(ends, without), pose.x, pose.z, agent.stride)
+        way = ways.detour(ends, without)
+        for share in SHARES:
+            x, z, cell = ways.stepped(way, pose.x, pose.z, agent.stride * share)
+            if cell == -2 or not in_the_way(world, number, (pose, Pose(x, z)), 2 * BODY_RADIUS - SLACK):
+                break
+        else:
+            cell = -2
         if cell == -2:
             return world
     if cell == -2:
