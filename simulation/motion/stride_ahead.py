@@ -92,6 +92,14 @@ def kept_apart(before: World, now: World, after: World, number: int) -> World:
     return after
 
 
+def is_beside(world: World, number: int, other: int) -> bool:
+    """Return whether another character is so near that it may stop a stride."""
+    one, two = world.agents[number], world.agents[other]
+    if one.pose is None or two.pose is None:
+        return False
+    return math.dist(one.pose.point, two.pose.point) < 2 * BODY_RADIUS + one.stride
+
+
 def _meet(start: Pose, end: Pose, was: Pose, at: Pose) -> bool:
     """Return whether two characters that go straight at the same time come nearer than both bodies need, and nearer
     than they were.
