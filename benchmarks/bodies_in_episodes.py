@@ -3,8 +3,8 @@
     python benchmarks/bodies_in_episodes.py [--episodes 300] [--without]
 
 Tasks of Watch-And-Help and of Online Watch-And-Help come in turn, with four helpers. Two bodies are in one place where
-their middles come nearer than two radii, less the tolerance, at the end of a tick or on the straight way of both during
-it. An agent waits for ever if it tries to walk and does not get on for `PATIENCE` ticks.
+their middles come nearer than two radii, less the tolerance, at the end of a tick or, where they walk, on the straight way
+of both during it. An agent waits for ever if it tries to walk and does not get on for `PATIENCE` ticks.
 """
 
 from __future__ import annotations
@@ -83,7 +83,18 @@ def nearest(before: World, world: World) -> float:
 
 def overlaps(ticks: Ticks) -> int:
     """Return the ticks in which two bodies are in one place and come nearer or go on so."""
-    return sum(nearest(each.before, each.world) < NEAR for each in ticks)
+    return sum(_is_near(each) for each in ticks)
+
+
+def _is_near(tick: Tick) -> bool:
+    """Return whether a tick brings two together; on the way only if both walk or stand, since others find a way."""
+    if math.dist(*points(tick.world)) < NEAR:
+        return True
+    walks = all(
+        one == other or ((step := tick.instructions.get(number)) is None or step.action in WALKS)
+        for number, (one, other) in enumerate(zip(points(tick.before), points(tick.world), strict=True))
+    )
+    return walks and nearest(tick.before, tick.world) < NEAR
 
 
 def waits(ticks: Ticks) -> Iterator[int]:
@@ -94,10 +105,16 @@ def waits(ticks: Ticks) -> Iterator[int]:
             step = each.instructions.get(number)
             one, other = each.before.agents[number], each.before.agents[1 - number]
             blocked = math.dist(*points(each.before)) < 2 * BODY_RADIUS + one.stride + other.stride
-            stood = number not in each.failures and one.pose == each.world.agents[number].pose
+            after = each.world.agents[number]
+            there = step is not None and bool(step.objects) and _is_there(each.world, after.close, step.objects[0].node)
+            stood = number not in each.failures and one.pose == after.pose and not there
             row = row + 1 if step is not None and step.action in WALKS and stood and blocked else 0
             most = max(most, row)
         yield most
+
+
+def _is_there(world: World, close: int, node: int | None) -> bool:
+    return node is not None and bool(close >> world.home.index[node] & 1)
 
 
 def measured(episodes: int, bodies: bool) -> None:

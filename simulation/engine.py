@@ -13,6 +13,7 @@ from hearth.simulation.actions.consequences import actions_of
 from hearth.simulation.actions.metric_checks import followed, stepped_aside
 from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
+from hearth.simulation.motion.giving_way import seated_apart
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.motion.stride_ahead import is_beside, kept_apart
 from hearth.simulation.processes import advanced, widened
@@ -202,7 +203,7 @@ def tick(
                 stopped[agent] = world.home.index[mine.objects[0].node]  # type: ignore[index]
             now = after
         else:
-            now = result
+            now = seated_apart(result, agent) if rules.bodies else result
     now = _let_pass(world, now, instructions, stopped, rules) if stopped else now
     return advanced(world, now) if rules.consequences else now, failures
 

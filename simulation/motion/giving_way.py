@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from hearth.schemas.graph import Spot
@@ -10,6 +12,7 @@ from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.motion.navigation import BODY_RADIUS, Field, Ways
 from hearth.simulation.motion.stride_ahead import SHARES, SLACK, closed_doors, in_the_way
 from hearth.simulation.rules import Rules
+from hearth.simulation.world.bits import lowest
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
 
@@ -47,6 +50,37 @@ def stride_aside(world: World, number: int, other: int, target: int, rules: Rule
         if cell != -2 and not in_the_way(world, number, (pose, Pose(x, z)), 2 * BODY_RADIUS - SLACK):
             return Pose(x, z, pose.towards((x, z)).yaw)
     return None
+
+
+PLACES = (0.55, -0.55, 1.1, -1.1)
+"""Places to the side of a seat's middle, metres."""
+
+
+def seated_apart(world: World, number: int) -> World:
+    """Return the world in which a character that shares a seat is beside the others, where the seat is wide enough."""
+    agent = world.agents[number]
+    pose = agent.pose
+    others = [each.pose.point for k, each in enumerate(world.agents) if k != number and each.pose is not None]
+    if pose is None or not agent.on or _is_free(pose.point, others):
+        return world
+    box = world.home.node(lowest(agent.on)).box
+    angle = math.radians(pose.yaw)
+    for place in PLACES if box is not None else ():
+        x, z = pose.x + place * math.cos(angle), pose.z - place * math.sin(angle)
+        inside = all(
+            abs(now - middle) <= size / 2
+            for now, middle, size in zip(
+                (x, z), (box.center[0], box.center[2]), (box.size[0], box.size[2]), strict=True
+            )
+        )
+        if inside and _is_free((x, z), others):
+            beside = agent._replace(pose=Pose(x, z, pose.yaw))
+            return world.with_agent(number, beside)
+    return world
+
+
+def _is_free(point: Spot, others: list[Spot]) -> bool:
+    return all(math.dist(point, other) >= 2 * BODY_RADIUS for other in others)
 
 
 def _way(ways: Ways, field: Field, at: Pose) -> list[Spot]:
