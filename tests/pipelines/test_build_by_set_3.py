@@ -236,3 +236,22 @@ def test_the_rules_follow_the_knowledge():
     assert rules_of(known) is DEFAULT and rules_of(known.of_set(3)) is CONSEQUENCES
     with pytest.raises(ValueError, match="no action set 4"):
         known.of_set(4)
+
+
+def test_a_new_dataset_is_of_set_3_unless_set_2_is_asked_for(source, tmp_path):
+    options = {"homes": ("maple",), "variants": 0, "pictures": 0, "videos": 0}
+    made = build([str(source)], str(tmp_path / "new"), **options)
+    assert made.rejected == 0 and Dataset.open(made.dataset).manifest["action_set"] == NEXT_ACTION_SET
+    before = build([str(source)], str(tmp_path / "before"), action_set=2, **options)
+    assert before.stages["sample"].codes["NOT_SIMULATED"]
+    assert Dataset.open(before.dataset).manifest["action_set"] == ACTION_SET and not verify(before.dataset).faults
+
+
+def test_stages_run_alone_begin_with_set_3_and_keep_to_set_2_where_it_was_asked_for(source, tmp_path):
+    out, names = str(tmp_path / "alone"), {"homes": ("maple",), "pictures": 0}
+    build([str(source)], out, only="ingest", **names)
+    for asked, expected in ((None, NEXT_ACTION_SET), (2, ACTION_SET)):
+        build([], out, only="validate", action_set=asked, **names)
+        build([], out, only="sample", **names)
+        for stage in ("validate", "sample"):
+            assert read_manifest(tmp_path / "alone" / stage).content["action_set"] == expected
