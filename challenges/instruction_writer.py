@@ -195,7 +195,13 @@ def _joined(part: Joined, knowledge: Knowledge, style: Style, chooser: Random) -
     if part.join == "not" and (act := _never(part.goals[0], knowledge)) is not None:
         return str(other["never"].format(act=act))
     parts = ", ".join(f"({clauses(goal, knowledge, style, chooser)})" for goal in part.goals)
-    return str(other["joined"][part.join].format(parts=parts, variable=part.variable[1:], ticks=part.ticks))
+    slots = {"variable": _called(part.variable, part.kind), "other": _called(*part.other)}
+    return str(other["joined"][part.join].format(parts=parts, ticks=part.ticks, number=part.number, **slots))
+
+
+def _called(variable: str, kind: str) -> str:
+    """Return a variable, with the class of its things if it has one."""
+    return f"{variable[1:]} (any {kind})" if kind else variable[1:]
 
 
 def _never(goal: Goal, knowledge: Knowledge) -> str | None:
