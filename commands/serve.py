@@ -2,26 +2,33 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
+import typer
+
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.commands.serve_virtualhome import serve_virtualhome
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
 
 
 def serve(
-    port: int = 8000,
-    out: Path = Path("collected"),
+    port: int | None = None,
+    out: Path | None = None,
     store: str = "",
     study: Path | None = None,
     films: Path | None = None,
     public: str = "",
     proxy: str = "",
     kb: Path | None = None,
+    virtualhome: bool = False,
+    homes: Path | None = None,
+    seed: int = 0,
     as_json: bool = False,
 ) -> None:
     """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
@@ -31,13 +38,26 @@ def serve(
     whose token is also in DIR/.server/desk-token. Ctrl-C stops it; accepted contributions are kept, also if it is
     killed.
 
+    --virtualhome serves scripts of VirtualHome instead: it answers in the place of the Unity program, by the same
+    messages, and records into DIR.
+
     \b
     Examples:
       hearth serve
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
       hearth serve --public https://homes.example.org --proxy 127.0.0.1
+      hearth serve --virtualhome --out recordings
     """
+    _check_kind(virtualhome, {"--store": store, "--study": study, "--films": films, "--public": public,
+                              "--proxy": proxy}, {"--homes": homes, "--seed": seed})  # fmt: skip
+    if virtualhome:
+        for module in ("starlette", "uvicorn"):
+            library(module)
+        port = VIRTUALHOME_PORT if port is None else port
+        serve_virtualhome(port, out or Path("recordings"), homes, kb, seed, as_json)
+        return
+    out = out or Path("collected")
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
     from hearth.studies.study_file import named
@@ -53,7 +73,7 @@ def serve(
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
-    where = listening(port)
+    where = listening(8000 if port is None else port)
     address = f"http://127.0.0.1:{where.getsockname()[1]}"
     token = desk_token(out)
     kept = Store(store or default_url(out))
@@ -68,6 +88,17 @@ def serve(
     sys.stdout.flush()
     run(app, where, proxy)
 
+
+def _check_kind(virtualhome: bool, of_rooms: Mapping[str, object], of_unity: Mapping[str, object]) -> None:
+    """Refuse options of the other server."""
+    wrong = [name for name, value in (of_rooms if virtualhome else of_unity).items() if value]
+    if wrong:
+        where = "without --virtualhome" if virtualhome else "with --virtualhome"
+        raise typer.BadParameter(f"it has an effect only {where}", param_hint=wrong[0])
+
+
+VIRTUALHOME_PORT = 8080
+"""The port at which clients of VirtualHome ask."""
 
 _PUBLIC = re.compile(r"https://(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?|\[[0-9A-Fa-f:.]+\])(?::[0-9]{1,5})?")
 """A public address: a name as browsers send it, and a port. Links and headers are made of it."""

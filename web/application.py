@@ -1,6 +1,5 @@
 """The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
-import asyncio
 import errno
 import hmac
 import logging
@@ -14,7 +13,7 @@ import jinja2
 from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
-from starlette.requests import ClientDisconnect, HTTPConnection, Request
+from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -26,8 +25,9 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
-from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
+from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
+from hearth.web.request_body import read_body
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
@@ -132,7 +132,7 @@ def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
         session = await in_thread(sessions.find, web.store, token_of(request))
         sender = session.id if session else sender_of(request)
         web.rates["request"].check(sender, request.url.path)
-        body = await _body(request, address.most)
+        body = await read_body(request, address.most)
         return await in_thread(_answer, web, address, request, session, body, within=within)
 
     return endpoint
@@ -185,22 +185,6 @@ def _is_researcher(web: Web, request: Request) -> bool:
     kind, _, given = request.headers.get("authorization", "").partition(" ")
     token = given if kind.lower() == "bearer" else request.cookies.get(desk_access.COOKIE, "")
     return hmac.compare_digest(sessions.digest(token), web.desk)
-
-
-async def _body(request: Request, most: int) -> bytes:
-    parts, size = [], 0
-    try:
-        async with asyncio.timeout(QUIET_SECONDS):
-            async for part in request.stream():
-                size += len(part)
-                if size > most:
-                    raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
-                parts.append(part)
-    except ClientDisconnect:
-        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
-    except TimeoutError:
-        raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
-    return b"".join(parts)
 
 
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:

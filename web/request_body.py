@@ -1,0 +1,34 @@
+"""Bodies of requests, within a size and a time."""
+
+import asyncio
+
+from starlette.requests import ClientDisconnect, Request
+
+from hearth.schemas.failures import Code
+from hearth.web.limits import QUIET_SECONDS
+from hearth.web.web_errors import WebError
+
+
+async def read_body(request: Request, most: int) -> bytes:
+    """Return the body of a request.
+
+    Args:
+        request: whose body was not read yet.
+        most: bytes that it may have.
+
+    Raises:
+        WebError: FILE_TOO_LARGE, DISCONNECTED or TIMED_OUT.
+    """
+    parts, size = [], 0
+    try:
+        async with asyncio.timeout(QUIET_SECONDS):
+            async for part in request.stream():
+                size += len(part)
+                if size > most:
+                    raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
+                parts.append(part)
+    except ClientDisconnect:
+        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
+    except TimeoutError:
+        raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
+    return b"".join(parts)
