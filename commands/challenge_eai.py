@@ -96,6 +96,45 @@ def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_
             _say(kind, finding)
 
 
+@app.command()
+def plan(wheel: Path, limit: int | None = None, out: Path | None = None, as_json: bool = False) -> None:
+    """Plan for each goal of the interface, run the plans, and print how many run and reach their goal.
+
+    \b
+    Examples:
+      hearth challenge eai plan virtualhome_eval-0.1.1-py3-none-any.whl
+      hearth challenge eai plan virtualhome_eval-0.1.1-py3-none-any.whl --limit 20 --out plans.json
+    """
+    import time
+
+    from hearth.interop.eai.goal_planner import GoalPlanner
+    from hearth.interop.eai.task_worlds import task_world
+    from hearth.interop.eai.wheel import Wheel
+    from hearth.kb.loading.load import default
+    from hearth.schemas.syntax import print_lines
+
+    read, known = Wheel(wheel), default()
+    numbers = [number for number, task in read.tasks.items() if not task.empty][:limit]
+    rows, seconds = [], 0.0
+    for number in numbers:
+        there = task_world(read, number, known)
+        began = time.perf_counter()
+        program, reached = GoalPlanner(there, known).plan()
+        seconds += time.perf_counter() - began
+        rows.append({"task": number, "reached": reached, "executed": bool(program.steps),
+                     "plan": list(print_lines(program))})  # fmt: skip
+    success, executed = (sum(bool(row[name]) for row in rows) for name in ("reached", "executed"))
+    found = {"tasks": len(rows), "reach_their_goal": success, "run": executed,
+             "seconds_a_task": round(seconds / max(len(rows), 1), 3),
+             "without_a_plan": [row["task"] for row in rows if not row["reached"]]}  # fmt: skip
+    if out is not None:
+        output.write(out, rows)
+    if as_json:
+        output.emit(found)
+    else:
+        output.figures({**found, "without_a_plan": ", ".join(found["without_a_plan"]) or "none"})
+
+
 def _say(kind: str, finding: Any) -> None:
     output.line(f"\n{kind}: task {finding.task}, {finding.title}")
     output.line(f"  goal: {finding.goal or 'nothing'}")

@@ -15,7 +15,9 @@ from hearth.interop.eai import action_sequencing, goal_interpretation
 from hearth.interop.eai.action_sequencing import Fault
 from hearth.interop.eai.answer_texts import plan_as_scored, plan_of
 from hearth.interop.eai.audit import BY_HASH, EMPTY, GOLD, PASSED_OVER, PLUGS, SEVERAL, wrong_goals, wrong_verdicts
+from hearth.interop.eai.goal_planner import GoalPlanner
 from hearth.interop.eai.model_table import published, table
+from hearth.interop.eai.task_worlds import task_world
 from hearth.interop.eai.transition_modelling import compared, compared_as_scored, operators_of
 from hearth.interop.eai.wheel import DATA, PLACE, RESOURCES, ROOT, Answer, Wheel
 from hearth.schemas.diagnostics import HearthError
@@ -202,6 +204,15 @@ def test_the_table_of_a_wheel_without_answers_is_refused(wheel, knowledge, tmp_p
         list(table(wheel, knowledge, ["gpt-9"]))
 
 
+@pytest.mark.parametrize(
+    ("task", "steps"),
+    [("1_1", ["Walk", "PlugIn", "SwitchOn"]), ("2_1", ["Walk", "Grab", "Touch"]), ("4_1", ["Walk", "Grab", "Walk"])],
+)
+def test_plans_that_run_and_reach_their_goal(wheel, knowledge, task, steps):
+    program, reached = GoalPlanner(task_world(wheel, task, knowledge), knowledge).plan()
+    assert reached and [step.action for step in program.steps] == steps
+
+
 def call(*arguments):
     return CliRunner().invoke(app, [str(argument) for argument in arguments])
 
@@ -213,6 +224,9 @@ def test_commands(tmp_path):
     result = call("challenge", "eai", "table", path, "--ability", "action_sequencing", "--json")
     assert result.exit_code == 0 and json.loads(result.output)["compared"] == 0
     assert call("challenge", "eai", "table", path, "--ability", "cooking").exit_code == 2
+    result = call("challenge", "eai", "plan", path, "--out", tmp_path / "plans.json", "--json")
+    assert json.loads(result.output)["reach_their_goal"] == 3
+    assert json.loads((tmp_path / "plans.json").read_text())[0]["plan"][0] == "[Walk] <television> (1.10)"
     assert call("challenge", "eai", "table", tmp_path / "no.whl").exit_code == 1
 
 
