@@ -159,7 +159,7 @@ def _holds(task: Task, world: World, done: str, actions: Sequence[str]) -> bool:
 
 
 def _by_ours(there: TaskWorld, plan: Pairs | None, knowledge: Knowledge) -> tuple[bool, bool, str]:
-    """Return whether every step is done, whether the whole goal then holds, and the code of what fails."""
+    """Return whether every step is done, whether the whole goal then holds, and the code of the failure."""
     if not plan:
         return False, False, str(Code.SYNTAX)
     for action, names in plan:

@@ -1,4 +1,4 @@
-"""A planner for goals of the interface: it does what a fact needs, and what the engine's refusals ask for first."""
+"""A planner for goals of the interface: it does the act that a fact needs, after the acts that the engine's refusals ask for."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MOST_ORDERS = 24
 """Orders of a goal's facts that are tried."""
 
 ROUNDS = 4
-"""Times that facts which later ones have undone are done again."""
+"""Times that the planner repeats facts that later ones have undone."""
 
 FIRST_DO: dict[Code, tuple[str, int]] = {
     Code.NOT_CLOSE: ("Walk", 0),
@@ -44,7 +44,7 @@ FIRST_DO: dict[Code, tuple[str, int]] = {
     Code.DOOR_CLOSED: ("Open", 0),
     Code.OCCUPIED: ("Grab", 1),
 }
-"""What a refused step asks for: an action, and which of the failure's objects it is done to; -1 for none."""
+"""Remedies of a refused step: an action, and the place of its object among the failure's; -1 for none."""
 
 BY_RELATION: dict[str, tuple[str, ...]] = {
     "HOLDS_RH": ("Grab",),
@@ -89,7 +89,9 @@ class GoalPlanner:
                 found = self._with_facts(done, facts)
                 program = Program(steps=found.steps)
                 execution = run(self.there.start, program, EVOLVING_GRAPH)
-                if execution.failure is None and Progress.of(self.goal, execution).satisfied:
+                if execution.failure is not None:
+                    continue
+                if Progress.of(self.goal, execution).satisfied:
                     return program, True
                 best = best or program
         return best or Program(), False
@@ -203,7 +205,7 @@ class GoalPlanner:
         return Step(name, tuple(ObjectRef(home.classes[home.index[node]], 1, node) for node in nodes))
 
     def _achieved(self, done: Partial, step: Step, above: tuple[Step, ...]) -> Partial | None:
-        """Return the world after a step, with what had to be done before it."""
+        """Return the world after a step and the steps that it needed before."""
         for _ in range(DEEPEST):
             result = done.with_step(step)
             if isinstance(result, Partial):

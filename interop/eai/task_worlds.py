@@ -22,7 +22,7 @@ class TaskWorld:
     Attributes:
         task: the task.
         start: the world.
-        names: class names of what the gold program changes, each with its node: all that answers may name.
+        names: class names of the things that the gold program changes, each with its node; answers may name no others.
         final: edges of the gold program's end.
         final_states: states of nodes there.
         gold: its steps, bound.

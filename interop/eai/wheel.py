@@ -34,7 +34,7 @@ LARGEST = 64 << 20
 
 
 class Answer(NamedTuple):
-    """What a model answered to a task."""
+    """A model's answer to a task."""
 
     task: str
     text: str

@@ -44,7 +44,7 @@ def _normals(vectors: NDArray[Any]) -> NDArray[np.uint8]:
 
 
 def _flow(pixels: NDArray[Any]) -> NDArray[np.uint8]:
-    """Return motion as colours: the hue is its direction, and what is white stands still; unknown is black."""
+    """Return motion as colours: the hue is its direction, white stands still, and black is unknown."""
     known = np.isfinite(pixels).all(axis=2)
     x, y = np.where(known, pixels[..., 0], 0.0), np.where(known, pixels[..., 1], 0.0)
     hue = np.arctan2(y, x)

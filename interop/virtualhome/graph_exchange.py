@@ -53,7 +53,7 @@ def _transform(box: Box, yaw: float) -> dict[str, list[float]]:
 
 @dataclass
 class GraphChange:
-    """What a client's graph changes in a scene.
+    """The changes that a client's graph asks for.
 
     Attributes:
         add: new nodes, without relations.
@@ -72,7 +72,7 @@ class GraphChange:
     boxes: dict[int, Box] = field(default_factory=dict)
 
     def as_json(self) -> dict[str, Any]:
-        """Return the ids of what changed, by kind."""
+        """Return the ids of changed nodes, by kind."""
         return {
             "added": [node.id for node in self.add],
             "removed": self.remove,

@@ -27,7 +27,7 @@ class Request:
 
     Attributes:
         id: repeated in the reply.
-        action: the name of what is asked for.
+        action: the name of the action.
         numbers: `intParams`.
         texts: `stringParams`.
     """

@@ -21,7 +21,7 @@ OTHER_SETTINGS = ("randomize_execution", "random_seed", "processing_time_limit",
 
 @dataclass(frozen=True, slots=True)
 class ScriptSettings:
-    """What a client asks of a script.
+    """The settings that a client gives with a script.
 
     Attributes:
         search: whether things are found for the script; else its numbers are nodes.

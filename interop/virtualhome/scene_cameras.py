@@ -28,7 +28,7 @@ MOST_ADDED = 200
 
 
 class Mount(NamedTuple):
-    """Where a camera is, and how it is turned: degrees about x (down), y (right) and z, and the vertical field."""
+    """A camera's place, its rotation in degrees about x (down), y (right) and z, and its vertical field."""
 
     position: Point
     rotation: Point
@@ -36,7 +36,7 @@ class Mount(NamedTuple):
 
 
 class Surroundings(NamedTuple):
-    """What a camera must not leave, and what it must not stand in: boxes of rooms by id, and of things."""
+    """The boxes of rooms, by id, that a camera must not leave, and those of things, in which it must not stand."""
 
     rooms: Mapping[int, Box | None]
     things: list[Box]

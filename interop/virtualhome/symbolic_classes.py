@@ -155,7 +155,7 @@ class EnvironmentState(_Graph):
 
 @dataclass
 class ExecutionInfo:
-    """Why a script was not executed."""
+    """The reasons for which a script was not executed."""
 
     messages: list[str] = field(default_factory=list)
 

@@ -80,7 +80,7 @@ class ScriptExecutor:
 
 
 Checked = tuple[Any, Any, Any, Any, Any, Any, Any, Any]
-"""What `check_script` returns: message, final state, graphs, start graph, id mapping, info, helper (None), script."""
+"""The result of `check_script`: message, final state, graphs, start graph, id mapping, info, helper (None), script."""
 
 
 def check_script(

@@ -159,7 +159,7 @@ class UnityScene:
 
     @cached_property
     def around(self) -> Surroundings:
-        """What cameras of characters stay in and out of."""
+        """The boxes that cameras of characters stay in and out of."""
         return Surroundings.of(self.built)
 
     @property
@@ -217,7 +217,7 @@ class UnityScene:
         return first, chosen.class_name
 
     def move_character(self, number: int, point: Point) -> None:
-        """Let a character stand elsewhere, with what it holds.
+        """Let a character stand elsewhere, with the things that it holds.
 
         Raises:
             HearthError: UNKNOWN_AGENT; NO_ROOM: the point is outside of all rooms.
