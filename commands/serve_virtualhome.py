@@ -7,10 +7,13 @@ from pathlib import Path
 
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.schemas.optional_libraries import library
 
 
 def serve_virtualhome(port: int, out: Path, homes: Path | None, kb: Path | None, seed: int, as_json: bool) -> None:
     """Answer clients of VirtualHome's Unity program until interrupted."""
+    for module in ("starlette", "uvicorn"):
+        library(module)
     from hearth.interop.virtualhome.protocol_actions import ACTIONS, Simulator
     from hearth.interop.virtualhome.script_recordings import Recordings
     from hearth.interop.virtualhome.unity_scene import Homes, UnityScene

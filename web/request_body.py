@@ -1,4 +1,4 @@
-"""Bodies of requests, within a size and a time."""
+"""The body of a request: read within a time and up to a size."""
 
 import asyncio
 
@@ -9,15 +9,11 @@ from hearth.web.limits import QUIET_SECONDS
 from hearth.web.web_errors import WebError
 
 
-async def read_body(request: Request, most: int) -> bytes:
-    """Return the body of a request.
-
-    Args:
-        request: whose body was not read yet.
-        most: bytes that it may have.
+async def body_of(request: Request, most: int) -> bytes:
+    """Return the whole body of a request.
 
     Raises:
-        WebError: FILE_TOO_LARGE, DISCONNECTED or TIMED_OUT.
+        WebError: FILE_TOO_LARGE, DISCONNECTED, TIMED_OUT.
     """
     parts, size = [], 0
     try:

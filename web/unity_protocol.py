@@ -18,7 +18,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines
 from hearth.web.handler_threads import DESK_WITHIN, in_thread
-from hearth.web.request_body import read_body
+from hearth.web.request_body import body_of
 from hearth.web.room_request import json_answer
 from hearth.web.security import Security
 from hearth.web.web_errors import WebError
@@ -60,7 +60,7 @@ async def _endpoint(server: UnityServer, request: HttpRequest) -> Response:
     """Answer a request; what is refused is a reply, too, as clients of Unity expect."""
     deadlines.begin(PATIENCE)
     try:
-        body = await read_body(request, MOST_REQUEST)
+        body = await body_of(request, MOST_REQUEST)
         return json_answer(await in_thread(server.answer, body, within=DESK_WITHIN))
     except WebError as error:
         found = f"expected {error.expected}, found {error.actual} ({error.code})"

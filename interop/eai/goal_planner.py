@@ -1,4 +1,4 @@
-"""A planner for goals of the interface: it does the act that a fact needs, after the acts that the engine's refusals ask for."""
+"""A planner for goals of the interface: it does an act that a fact needs, and before it the remedy of each refusal."""
 
 from __future__ import annotations
 
