@@ -15,8 +15,8 @@ from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.foot_steps import planted, stepping
-from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.free_gestures import whole_body
+from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.lying_down import lying_down, made_ready
 from hearth.rendering.people.motion_along_routes import Place, angle, between, eased
