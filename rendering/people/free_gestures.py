@@ -1,4 +1,4 @@
-"""Gestures without a thing: places of the palms beside the body, a stoop, feet, and what a body does as a whole."""
+"""Gestures without a thing: places of the palms, a stoop, feet, and motions of the whole body."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ class Gesture:
 
     Attributes:
         hand: what the hands do (step_hands_and_gaze.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`,
-            `push`, `wear`, `wave`, `free` (a row of free_gestures.yaml), or "" (nothing but carrying).
+            `push`, `wear`, `wave`, `free`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
         free: the row of free_gestures.yaml.
         motion: of the hands while they act: `rub`, `keys`, `beat`, `shake`, `circle`, of the body `hop`, `sway`, or ""
