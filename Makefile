@@ -156,6 +156,26 @@ test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, bro
 	@! command -v npm >/dev/null || $(MAKE) --no-print-directory web >/dev/null
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
 
+# Each package of adapters/ has an environment of its own: the libraries of two hubs do not go together. Hearth itself and
+# the package are installed from this checkout; torch is in no lock.
+HUBS := verifiers openenv trl inspect
+HUB = .venv/adapters/$*
+
+.venv/adapters/%/.ready: adapters/hearth-%/requirements.lock adapters/hearth-%/pyproject.toml pyproject.toml | $(READY)
+	@rm -rf $(HUB) && $(PY) -m venv $(HUB)
+	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps --require-hashes -r $<
+	@[ $* != trl ] || $(HUB)/bin/python -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 2>/dev/null \
+	  || $(HUB)/bin/python -m pip install -qq --no-compile 'torch>=2.9'
+	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps -e . -e adapters/hearth-$*
+	@[ $* != openenv ] || (cd adapters/hearth-openenv && ../../$(HUB)/bin/uv lock -q)
+	@touch $@
+
+$(HUBS:%=test-%): test-%: .venv/adapters/%/.ready
+	@cd adapters/hearth-$* && ../../$(HUB)/bin/python -m pytest -q -p no:cacheprovider tests
+
+.PHONY: $(HUBS:%=test-%) test-adapters
+test-adapters: $(HUBS:%=test-%)  ## the tests of adapters/, each with its hub in an environment of its own
+
 test-all: .venv/.tools .venv/.models  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
 
@@ -194,6 +214,17 @@ lock: ## pin the newest versions allowed by pyproject.toml, with hashes, in requ
 	  $(call without,build/lock/base.txt,.) -o build/lock/tools.txt
 	@for name in base:requirements.lock tools:requirements-tools.lock; do \
 	   { sed '/^#/!d' $${name#*:}; cat build/lock/$${name%:*}.txt; } > build/lock/whole && mv build/lock/whole $${name#*:}; done
+	@$(MAKE) --no-print-directory lock-adapters
+
+# Written from what pyproject.toml of each allows.
+OF_HUB = build/lock/bin/uv pip compile -q adapters/hearth-$(1)/pyproject.toml --extra test --universal \
+  --python-version 3.11 --generate-hashes --no-annotate --no-header --no-emit-package hearth-home-programs
+.PHONY: lock-adapters
+lock-adapters:  ## pin the newest versions of the hubs in the locks of adapters/
+	@[ -x build/lock/bin/uv ] || { $(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install -q uv; }
+	@$(foreach hub,$(HUBS),$(call OF_HUB,$(hub)) -o build/lock/$(hub).txt && \
+	   $(call OF_HUB,$(hub)) -c build/lock/$(hub).txt $(call without,build/lock/$(hub).txt,$(TORCHES)) \
+	   -o adapters/hearth-$(hub)/requirements.lock && ) true
 
 web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
 	@npm ci --prefix web --loglevel error && $(PY) -m hearth.web.third_party_scripts && du -sh web/fetched

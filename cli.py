@@ -88,6 +88,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "Ask people": {
         "serve": Entry("serve:serve", "The server where people annotate, play and judge, and the researcher's desk."),
+        "mcp": Entry("mcp:mcp", "Serve a home to agents over the Model Context Protocol (MCP)."),
         "study": Entry("study:app", "Studies with people: check, simulate, prepare, export, report."),
     },
     "Make pictures": {

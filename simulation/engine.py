@@ -4,12 +4,14 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from operator import attrgetter
 
+from hearth.schemas.failure_words import USED_UP
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph_change import Change
 from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.consequences import actions_of
+from hearth.simulation.actions.literal_effects import is_gone
 from hearth.simulation.actions.metric_checks import followed, stepped_aside
 from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
@@ -145,7 +147,8 @@ def act(world: World, instruction: Step, rules: Rules = DEFAULT) -> World | Fail
         result = _in_place(world, result, instruction, o, s)
     if isinstance(result, Failure):
         # `dataclasses.replace` takes three times as long, and repairing is full of failures.
-        rest = (result.objects, result.names, result.expected, result.actual)
+        used_up = rules.consequences and result.objects and is_gone(world, home.index[result.objects[0]])
+        rest = (result.objects, result.names, result.expected, USED_UP if used_up else result.actual)
         return Failure(result.code, result.tick, number, name, *rest)
     return result
 
