@@ -27,7 +27,7 @@ app = typer.Typer(
 )
 
 
-USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "household": "valid_seen"}
+USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "owah_bodies": "test", "household": "valid_seen"}
 """The splits of `tasks` where none is named and there is no `test-1`."""
 
 
