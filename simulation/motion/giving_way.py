@@ -65,7 +65,9 @@ def seated_apart(world: World, number: int) -> World:
         return world
     box = world.home.node(lowest(agent.on)).box
     angle = math.radians(pose.yaw)
-    for place in PLACES if box is not None else ():
+    if box is None:
+        return world
+    for place in PLACES:
         x, z = pose.x + place * math.cos(angle), pose.z - place * math.sin(angle)
         inside = all(
             abs(now - middle) <= size / 2
