@@ -31,7 +31,7 @@ app = typer.Typer(
 app.add_typer(challenge_eai.app, name="eai")
 
 
-USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "household": "valid_seen"}
+USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "owah_bodies": "test", "household": "valid_seen"}
 """The splits of `tasks` where none is named and there is no `test-1`."""
 
 

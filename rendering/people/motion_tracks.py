@@ -115,7 +115,7 @@ RATES = {"hop": 0.9, "beat": 2.4, "shake": 2.2, "circle": 1.1}
 """Motions of a hand, times a second."""
 
 FAR = {"hop": 0.05, "beat": 0.06, "shake": 0.09, "circle": 0.05}
-"""How far the hand goes from its place, metres."""
+"""Distance of the hand from its place at most, metres."""
 
 
 def acted(actor: Actor, gesture: Gesture) -> Segment:
