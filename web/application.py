@@ -11,12 +11,14 @@ from urllib.parse import parse_qsl
 import jinja2
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from starlette.applications import Starlette
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
+from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from hearth.kb.knowledge import Knowledge
@@ -27,6 +29,7 @@ from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
 from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
+from hearth.web.phrases import refused, say
 from hearth.web.request_body import body_of
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
@@ -79,14 +82,31 @@ def application(
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
             routes += [_route(web, address, prefix) for address in addresses]
-    routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
-    routes.append(Mount("/fetched", _Fetched(directory=FETCHED, check_dir=False)))
+    routes.append(Mount("/static", _packed(StaticFiles(directory=HERE / "static"))))
+    routes.append(Mount("/fetched", _packed(_Fetched(directory=FETCHED, check_dir=False))))
     handlers: dict[Any, Any] = {
         kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, DBAPIError, OSError, Exception)
     }
     made = Starlette(routes=routes, exception_handlers=handlers)
     made.router.redirect_slashes = False  # it would send people to the `Host` that they asked for
     return Security(made, hosts)
+
+
+def _packed(files: StaticFiles) -> ASGIApp:
+    """Return files that are sent compressed, and that browsers keep: they ask whether a file is still the same.
+
+    Pages are not compressed: the length of a compressed page betrays its secrets to a person who writes a part of it.
+    """
+
+    async def kept(scope: Scope, receive: Receive, send: Send) -> None:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)["Cache-Control"] = "no-cache"
+            await send(message)
+
+        await files(scope, receive, sent)
+
+    return GZipMiddleware(kept, minimum_size=1_000, compresslevel=6)
 
 
 class _Fetched(StaticFiles):
@@ -105,6 +125,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.globals["say"], made.globals["refused"] = say, refused
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made
@@ -219,6 +240,11 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     return answer
 
 
+def _address(asked: Request) -> str:
+    """Return the requested address with its query, such as the ids of a platform."""
+    return asked.url.path + (f"?{asked.url.query}" if asked.url.query and asked.method == "GET" else "")
+
+
 def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Response:
     status = error.status_code if isinstance(error, HTTPException) else fault.status
     if not by_browser(asked):
@@ -226,6 +252,8 @@ def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Res
     if fault.instead:
         return RedirectResponse(fault.instead, 303)
     begins = fault.code is Code.NO_SESSION
-    back, lost = (asked.url.path if begins else "/"), begins and bool(token_of(asked))
-    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost)
-    return HTMLResponse(page, status)
+    back, lost = (_address(asked) if begins else "/"), begins and bool(token_of(asked))
+    desk = asked.url.path.startswith("/desk")
+    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost, desk=desk)
+    comes = begins and not lost and asked.method in ("GET", "HEAD")  # a newcomer has done nothing wrong
+    return HTMLResponse(page, 200 if comes else status)
