@@ -39,7 +39,7 @@ class Turn:
 
     Attributes:
         episode: the name of the episode.
-        observation: your goal, your surroundings, and commands that make sense now.
+        observation: your goal, the things around you, and commands that make sense now.
         reward: of the last command.
         done: no command can follow.
         won: the goal is reached.
