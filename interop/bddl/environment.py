@@ -154,7 +154,7 @@ class _Building:
             relation = "INSIDE" if target in self.rooms.values() else table.relations[fact.predicate]
             if self.ids[first] not in self.rooms.values() and target != self.ids[first]:
                 self.edges |= {(me, relation, target), *([(target, relation, me)] if relation == "CLOSE" else [])}
-        elif fact.predicate in table.states:
+        elif fact.predicate in table.states and table.states[fact.predicate][fact.negated]:
             self.states.setdefault(me, []).append(table.states[fact.predicate][fact.negated])
         elif fact.predicate in table.substances and len(fact.terms) == 2:
             kind = table.kind_of(self.problem.instances[fact.terms[1]])

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import combinations, permutations
+from math import comb, perm
+from typing import TypeVar
 
 from hearth.interop.bddl.environment import Activity
 from hearth.interop.bddl.expressions import Expression
@@ -14,6 +17,8 @@ from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import Literal, Name
 from hearth.schemas.vocabulary import ROOM_CATEGORY
+
+T = TypeVar("T")
 
 Bound = Mapping[str, str]
 """Variables of BDDL -> instances, or variables of ours, which begin with `?`."""
@@ -29,14 +34,48 @@ def goal_of(activity: Activity, knowledge: Knowledge) -> Goal:
     return _Reading(activity, knowledge).goal(activity.problem.goal, {})
 
 
-def way_of(activity: Activity, knowledge: Knowledge) -> Goal:
-    """Return literals about nodes that together reach the goal: of alternatives and things the first ones.
+MOST_WAYS = 120
+"""Alternatives that `forn` and `forpairs` may have where they are written out."""
+
+CHOICES = 3
+"""Ways that are tried: see `way_of`."""
+
+
+def way_of(activity: Activity, knowledge: Knowledge, choice: int = 0) -> Goal:
+    """Return literals about nodes that together reach the goal, or come near it.
+
+    Args:
+        activity: with its goal.
+        knowledge: for classes.
+        choice: of alternatives and things: 0 the first ones; 1 the first, the second, the third, ... in turn; 2 the
+            last ones.
 
     Raises:
         HearthError: as `goal_of`.
     """
-    found = dict.fromkeys(_Reading(activity, knowledge).ways(activity.problem.goal, {}, False))
-    return Goal.of(*found)
+    reading = _Reading(activity, knowledge)
+    reading.choice = choice
+    found = list(dict.fromkeys(reading.ways(activity.problem.goal, {}, False)))
+    return Goal.of(*dict.fromkeys(_put_near(literal, found, activity, knowledge) for literal in found))
+
+
+def _put_near(
+    literal: Literal[Name], others: Sequence[Literal[Name]], activity: Activity, knowledge: Knowledge
+) -> Literal[Name]:
+    """Return a literal; of nearness, that the first thing is where the second one is."""
+    if literal.name != "CLOSE" or literal.negated:
+        return literal
+    classes = {node.id: node.class_name for node in activity.graph.nodes}
+    one, other = literal.terms
+    if not knowledge.has(classes.get(one, ""), "GRABBABLE"):
+        one, other = other, one
+    placed = [each for each in others if each.name in ("ON", "INSIDE") and len(each.terms) == 2 and not each.negated]
+    places = [(each.name, each.terms[1]) for each in placed if each.terms[0] == other]
+    edges = [e for e in activity.graph.edges if e.source == other and e.relation in ("ON", "INSIDE")]
+    places += [(e.relation, e.target) for e in edges if not knowledge.is_room(classes[e.target])]
+    places = [(relation, target) for relation, target in places if classes.get(target) != "floor"]
+    relation, target = places[0] if places else ("ON", other)
+    return Literal(relation, (one, target))
 
 
 @dataclass
@@ -46,6 +85,8 @@ class _Reading:
     activity: Activity
     knowledge: Knowledge
     rooms: set[int] = field(default_factory=set)
+    choice: int = 0
+    chosen: int = 0
 
     def __post_init__(self) -> None:
         self.rooms = {node.id for node in self.activity.graph.nodes if node.category == ROOM_CATEGORY}
@@ -91,13 +132,35 @@ class _Reading:
         number = each.parts[0].head if each.head == "forn" else ""
         kinds = [self._kind(_synset(one)) for one in lists]
         if not all(kinds) or _variables(bound) or each.head == "fornpairs" or len(lists) > 2:
-            raise self._fault(Code.NOT_UNDERSTOOD, f"`{each.head}` over these things can't be said", each.line,
-                              "synsets whose classes no other things of the problem have")  # fmt: skip
+            return self._one_by_one(each, lists, number, bound)
         own = [f"?x{count}" for count in range(1, len(lists) + 1)]
         inner = {**bound, **{self._over(one): name for one, name in zip(lists, own, strict=True)}}
         other = (own[1], kinds[1]) if len(lists) == 2 else ("", "")
         body = self.goal(each.parts[-1], inner)
         return Goal(parts=(Joined(each.head, (body,), own[0], kind=kinds[0], number=int(number or 0), other=other),))
+
+    def _one_by_one(self, each: Expression, lists: Sequence[Expression], number: str, bound: Bound) -> Goal:
+        """Return `forn` or `forpairs` as alternatives about nodes, where their number is small."""
+        things = [self._things(_synset(one), each.line) for one in lists]
+        goals: list[Goal] = []
+        if each.head == "forn" and comb(len(things[0]), int(number)) <= MOST_WAYS:
+            free = bool(_variables(bound))
+            for chosen in combinations(things[0], int(number)):
+                goals.append(Goal())
+                for name in things[0]:
+                    goal = self.goal(each.parts[-1], {**bound, self._over(lists[0]): name})
+                    goals[-1] &= goal if name in chosen else _negated(goal, free=free)
+        elif each.head == "forpairs" and perm(*sorted(map(len, things), reverse=True)) <= MOST_WAYS:
+            few, many = sorted((0, 1), key=lambda side: len(things[side]))
+            names = [self._over(one) for one in lists]
+            for chosen in permutations(things[many], len(things[few])):
+                goals.append(Goal())
+                for one, other in zip(things[few], chosen, strict=True):
+                    goals[-1] &= self.goal(each.parts[-1], {**bound, names[few]: one, names[many]: other})
+        if not goals:
+            raise self._fault(Code.NOT_UNDERSTOOD, f"`{each.head}` over these things can't be said", each.line,
+                              f"synsets with fewer things: {MOST_WAYS} ways at most")  # fmt: skip
+        return _joined("or", goals)
 
     def _kind(self, synset: str) -> str:
         """Return the class that all instances of a synset, and no other nodes, are found by; "" without one."""
@@ -122,7 +185,7 @@ class _Reading:
             one, other = (self._term(term, each.line) for term in terms)
             relation = "INSIDE" if other in self.rooms else table.relations[each.head]
             return Literal(relation, (one, other))
-        if each.head in table.states and len(terms) == 1:
+        if each.head in table.states and len(terms) == 1 and table.states[each.head][negated]:
             return Literal(table.states[each.head][negated], (self._term(terms[0], each.line, stateful=True),))
         if each.head in table.substances and len(terms) == 2:
             kind = table.kind_of(self.activity.problem.instances.get(terms[1], terms[1].lstrip("?")))
@@ -162,14 +225,13 @@ class _Reading:
         elif head == "imply":
             yield from self.ways(parts[1], bound, negated)
         elif head in ("and", "or") or (not head and len(parts) == 1):
-            for part in parts if (head != "or") != negated else parts[:1]:
+            for part in parts if (head != "or") != negated else self._some(parts):
                 yield from self.ways(part, bound, negated)
         elif head in ("forall", "exists"):
             things = self._things(_synset(parts[0]), each.line)
             every = (head == "forall") != negated
-            for index, name in enumerate(things if every else things[: len(things)]):
-                if every or index == 0:
-                    yield from self.ways(parts[-1], {**bound, parts[0].head: name}, negated)
+            for name in things if every else self._some(things):
+                yield from self.ways(parts[-1], {**bound, parts[0].head: name}, negated)
         elif head == "forn":
             for name in self._things(_synset(parts[1]), each.line)[: int(parts[0].head)]:
                 yield from self.ways(parts[-1], {**bound, parts[1].head: name}, negated)
@@ -179,6 +241,12 @@ class _Reading:
                 yield from self.ways(parts[-1], {**bound, parts[0].head: one, parts[1].head: other}, negated)
         else:
             yield self._way(each, bound, negated)
+
+    def _some(self, options: Sequence[T]) -> Sequence[T]:
+        """Return the option that this way takes."""
+        self.chosen += 1
+        number = (0, self.chosen - 1, -1)[self.choice] % len(options)
+        return options[number : number + 1]
 
     def _way(self, each: Expression, bound: Bound, negated: bool) -> Literal[Name]:
         literal = self._literal(each, bound, negated=negated)

@@ -25,15 +25,25 @@ def problem_text(graph: EnvironmentGraph, goal: Goal, knowledge: Knowledge, name
         HearthError: NOT_UNDERSTOOD: a part of the goal is about an order, a time or an action, which BDDL can't say.
     """
     writer = _Writing(graph, knowledge)
-    dust = "dust.n.01_1 - dust.n.01"
-    objects = f"        {dust}\n" + "\n".join(
-        f"        {' '.join(names)} - {synset}" for synset, names in writer.objects().items()
+    substances = "        dust.n.01_1 - dust.n.01\n        water.n.06_1 - water.n.06"
+    objects = (
+        substances
+        + "\n"
+        + "\n".join(f"        {' '.join(names)} - {synset}" for synset, names in writer.objects().items())
     )
     facts = "\n".join(f"        {fact}" for fact in writer.facts())
     return (
         f"(define (problem {name})\n    (:domain omnigibson)\n\n    (:objects\n{objects}\n    )\n\n"
         f"    (:init\n{facts}\n    )\n\n    (:goal\n        {writer.goal(goal, {})}\n    )\n)\n"
     )
+
+
+SUBSTANCES = (
+    ("DIRTY", "CLEAN", "covered", "dust.n.01_1"),
+    ("WET", "DRY", "covered", "water.n.06_1"),
+    ("FULL", "EMPTY", "filled", "water.n.06_1"),
+)
+"""States of ours that are predicates of a thing and a substance: of true, of false, the predicate, the substance."""
 
 
 @dataclass
@@ -150,11 +160,14 @@ def _state(state: str, name: str, *, at_start: bool = False) -> str:
     for predicate, (true, false) in words().states.items():
         if state == true:
             return f"({predicate} {name})"
-        if state == false and not at_start:
+        if state == false and state and not at_start:
             return f"(not ({predicate} {name}))"
-    if state == "DIRTY":
-        return f"(covered {name} dust.n.01_1)"
-    return f"(not (covered {name} dust.n.01_1))" if state == "CLEAN" and not at_start else ""
+    for true, false, predicate, substance in SUBSTANCES:
+        if state == true:
+            return f"({predicate} {name} {substance})"
+        if state == false and not at_start:
+            return f"(not ({predicate} {name} {substance}))"
+    return ""
 
 
 def _relation(relation: str, names: list[str]) -> str:
