@@ -1,8 +1,8 @@
 """The oldest activities of BEHAVIOR: how many are read as environment and goal, and how many our planner solves.
 
-The folder is `bddl` of the package `bddl`; that of version 1.0.1 has the 100 of BEHAVIOR-100. Activities are taken in the order of `activity_manifest.txt`, the oldest
-first, as far as the package defines them, then by their names. An activity is solved if the whole goal holds after the
-planner's episode and did not hold before.
+The folder is `bddl` of the package `bddl`; that of version 1.0.1 has the 100 of BEHAVIOR-100. Activities are taken in
+the order of `activity_manifest.txt`, the oldest first, as far as the package defines them, then by their names. An
+activity is solved if the whole goal holds after the planner's episode and did not hold before.
 
 Example:
   python benchmarks/behavior_activities.py site-packages/bddl --most 100
@@ -71,7 +71,7 @@ def main() -> None:
 
 
 def written_back(activity: Activity, goal: Goal, known: Knowledge) -> bool:
-    """Return whether the goal, written as BDDL with its home and read again, is the same goal about the same classes."""
+    """Return whether the goal, written as BDDL with its home and read again, is the same about the same classes."""
     text = problem_text(activity.graph, goal, known, activity.problem.name)
     again = environment_of(read_problem(text), known)
     return by_classes(goal, activity) == by_classes(goal_of(again, known), again)

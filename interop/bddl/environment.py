@@ -98,6 +98,7 @@ class _Building:
             as_second |= set(kinds[:1] if second and fact.predicate == "insource" else kinds[1:] if second else ())
             as_second |= set(kinds[1:] if second and fact.predicate == "insource" else ()) - as_thing
             as_thing |= set(kinds if not second else kinds[:1])
+        as_second |= {kind for kind in self.problem.instances.values() if words().kind_of(kind) != "other"} - as_thing
         return {kind for kind in as_second if words().kind_of(kind) != "other" or kind not in as_thing}
 
     def _make_rooms(self) -> None:

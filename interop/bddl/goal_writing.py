@@ -25,16 +25,15 @@ def problem_text(graph: EnvironmentGraph, goal: Goal, knowledge: Knowledge, name
         HearthError: NOT_UNDERSTOOD: a part of the goal is about an order, a time or an action, which BDDL can't say.
     """
     writer = _Writing(graph, knowledge)
-    substances = "        dust.n.01_1 - dust.n.01\n        water.n.06_1 - water.n.06"
-    objects = (
-        substances
-        + "\n"
-        + "\n".join(f"        {' '.join(names)} - {synset}" for synset, names in writer.objects().items())
-    )
     facts = "\n".join(f"        {fact}" for fact in writer.facts())
+    wanted = writer.goal(goal, {})
+    used = dict.fromkeys(name for *_, name in SUBSTANCES if name in facts + wanted)
+    listed = [*(f"{name} - {name.rpartition('_')[0]}" for name in used),
+              *(f"{' '.join(names)} - {kind}" for kind, names in writer.objects().items())]  # fmt: skip
+    objects = "\n".join(f"        {line}" for line in listed)
     return (
         f"(define (problem {name})\n    (:domain omnigibson)\n\n    (:objects\n{objects}\n    )\n\n"
-        f"    (:init\n{facts}\n    )\n\n    (:goal\n        {writer.goal(goal, {})}\n    )\n)\n"
+        f"    (:init\n{facts}\n    )\n\n    (:goal\n        {wanted}\n    )\n)\n"
     )
 
 
@@ -57,6 +56,9 @@ class _Writing:
         self.rooms = {node.id: node for node in self.graph.nodes if node.category == ROOM_CATEGORY}
         self.nodes = {node.id: node for node in self.graph.nodes}
         self.things = [n for n in self.graph.nodes if n.class_name not in PANELS and n.id not in self.rooms]
+        self.room_of = {
+            e.source: e.target for e in self.graph.edges if e.relation == "INSIDE" and e.target in self.rooms
+        }
         self.count = 0
 
     def objects(self) -> dict[str, list[str]]:
@@ -67,7 +69,9 @@ class _Writing:
         return found
 
     def instance(self, node: Node) -> str:
-        """Return the name of a node; of a room that of its floor."""
+        """Return the name of a node; of a room, and of each part of its floor, that of its floor."""
+        if node.class_name == "floor":
+            node = self.rooms[self.room_of[node.id]]
         return f"{synset('floor' if node.id in self.rooms else node.class_name)}_{node.id}"
 
     def facts(self) -> Iterator[str]:
@@ -87,7 +91,7 @@ class _Writing:
             elif target in known:
                 word = "ontop" if relation == "ON" else "inside"
                 yield f"({word} {self.instance(node)} {self.instance(other)})"
-        for node in self.things:
+        for node in [*self.things, *(node for node in self.graph.nodes if node.class_name == "floor")]:
             yield from (each for state in node.states if (each := _state(state, self.instance(node), at_start=True)))
 
     def goal(self, goal: Goal, bound: Mapping[str, str]) -> str:
