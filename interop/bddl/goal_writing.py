@@ -92,7 +92,12 @@ class _Writing:
                 word = "ontop" if relation == "ON" else "inside"
                 yield f"({word} {self.instance(node)} {self.instance(other)})"
         for node in [*self.things, *(node for node in self.graph.nodes if node.class_name == "floor")]:
-            yield from (each for state in node.states if (each := _state(state, self.instance(node), at_start=True)))
+            usual = self.knowledge.default_states(node.class_name)
+            facts = (_state(state, self.instance(node)) for state in node.states)
+            yield from (
+                fact for state, fact in zip(node.states, facts, strict=True)
+                if fact and not (fact.startswith("(not") and state in usual)
+            )  # fmt: skip
 
     def goal(self, goal: Goal, bound: Mapping[str, str]) -> str:
         """Return the expression of a goal."""
@@ -159,17 +164,17 @@ def synset(class_name: str) -> str:
     return f"{AGENT if class_name == CHARACTER_CLASS else class_name}.n.01"
 
 
-def _state(state: str, name: str, *, at_start: bool = False) -> str:
-    """Return the predicate of a state; "" for a state that BDDL does not have, or at the start where it is usual."""
+def _state(state: str, name: str) -> str:
+    """Return the predicate of a state; "" for a state that BDDL does not have."""
     for predicate, (true, false) in words().states.items():
         if state == true:
             return f"({predicate} {name})"
-        if state == false and state and not at_start:
+        if state == false and state:
             return f"(not ({predicate} {name}))"
     for true, false, predicate, substance in SUBSTANCES:
         if state == true:
             return f"({predicate} {name} {substance})"
-        if state == false and not at_start:
+        if state == false:
             return f"(not ({predicate} {name} {substance}))"
     return ""
 

@@ -1,12 +1,15 @@
 """Problems of BEHAVIOR: read as environments and goals, and homes and goals written as problems."""
 
+import json
 import re
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import hearth
 from hearth.challenges.household import household_tasks, solve
+from hearth.cli import app
 from hearth.homes.lint import lint
 from hearth.interop.bddl.environment import environment_of
 from hearth.interop.bddl.expressions import DEEPEST, LONGEST, read_expression
@@ -151,3 +154,16 @@ def test_every_class_of_the_table_is_one_of_ours():
     for word, name in words().classes.items():
         assert KNOWN.object_class(name) is not None, word
         assert KNOWN.object_class(word) is None, f"{word} needs no row"
+
+
+def test_an_activity_is_converted_by_a_command(tmp_path):
+    paths = [str(tmp_path / "shelf.bddl"), str(tmp_path / "home.json")]
+    (tmp_path / "shelf.bddl").write_text(TEXT)
+    done = CliRunner().invoke(app, ["home", "convert", *paths, "--json"])
+    assert done.exit_code == 0, done.output
+    document = json.loads(done.stdout)
+    home = hearth.home(str(tmp_path / "home.json"))
+    assert str(hearth.read_goal(document["goal"], home)) == document["goal"]
+    (tmp_path / "shelf.bddl").write_text(TEXT.replace("(imply", "(unless"))
+    done = CliRunner().invoke(app, ["home", "convert", *paths])
+    assert done.exit_code == 1 and "NOT_UNDERSTOOD" in done.output
