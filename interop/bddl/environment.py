@@ -91,7 +91,8 @@ class _Building:
     def _substances(self) -> set[str]:
         """Return the synsets that are only what something is covered by, filled with, or a source of."""
         about = {*words().substances, "insource", "contains"}
-        as_second, as_thing = set(), set()
+        as_second: set[str] = set()
+        as_thing: set[str] = set()
         for fact in self.problem.facts:
             kinds = [self.problem.instances.get(term, "") for term in fact.terms]
             second = fact.predicate in about and len(kinds) == 2

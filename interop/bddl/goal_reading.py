@@ -65,7 +65,7 @@ def _put_near(
     """Return a literal; of nearness, that the first thing is where the second one is."""
     if literal.name != "CLOSE" or literal.negated:
         return literal
-    classes = {node.id: node.class_name for node in activity.graph.nodes}
+    classes: dict[Name, str] = {node.id: node.class_name for node in activity.graph.nodes}
     one, other = literal.terms
     if not knowledge.has(classes.get(one, ""), "GRABBABLE"):
         one, other = other, one

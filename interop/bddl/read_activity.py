@@ -28,8 +28,9 @@ def read_activity(path: Path, knowledge: Knowledge) -> tuple[ReadGraph, str]:
         raise HearthError(text)
     found = environment_of(read_problem(text, str(path)), knowledge)
     names = {number: name for name, number in found.nodes.items()}
+    goal, left_out = "", list(found.left_out)
     try:
-        goal, faults = str(goal_of(found, knowledge)), ()
+        goal = str(goal_of(found, knowledge))
     except HearthError as error:
-        goal, faults = "", tuple(error.diagnostics)
-    return ReadGraph(found.graph, found.fillings, (*found.left_out, *faults), names), goal
+        left_out += error.diagnostics
+    return ReadGraph(found.graph, found.fillings, tuple(left_out), names), goal
