@@ -351,3 +351,35 @@ def test_words_for_states_that_mean_none_are_counted():
     found = read([{"label": "fridge", "state": "opn"}, {"label": "television", "states": ["on", "onn"]}])
     [note] = [note for note in found.fillings if note.what.startswith("words for states")]
     assert note.number == 2
+
+
+def test_a_thing_that_holds_itself_is_named():
+    data = [{"id": "a", "label": "box", "in": "a"}, {"id": "b", "label": "sofa", "contains": ["b"]}]
+    assert [fault.code for fault in read(data).left_out] == [Code.LOOP, Code.LOOP]
+
+
+def test_ids_that_two_things_share_are_named():
+    found = read(
+        {"rooms": [{"id": 1, "label": "kitchen"}], "objects": [{"id": 1, "label": "cup"}, {"id": 1, "label": "mug"}]}
+    )
+    [fault] = found.left_out
+    assert fault.code is Code.DUPLICATE and "objects[1]" in fault.message and "objects[0]" in fault.message
+    assert classes(found) == ["cup", "mug"]
+
+
+@pytest.mark.parametrize("data", [
+    [{"label": "fridge", "room": "garage"}],
+    {"rooms": [{"label": "garage"}], "objects": [{"label": "fridge"}]},
+])  # fmt: skip
+def test_a_room_that_is_none_of_ours_is_named_with_a_remedy(data):
+    [fault] = read(data).left_out
+    assert fault.code is Code.UNKNOWN_OBJECT and "garage" in fault.message and "mapping file" in fault.suggestion
+
+
+def test_the_basin_of_a_sink_is_the_sink():
+    sink = {"objectType": "Sink", "objectId": "Sink|1"}
+    basin = {"objectType": "SinkBasin", "objectId": "Sink|1|SinkBasin", "parentReceptacles": ["Sink|1"]}
+    cup = {"objectType": "Cup", "objectId": "Cup|1", "parentReceptacles": ["Sink|1|SinkBasin"]}
+    found = read({"objects": [sink, basin, cup]})
+    assert classes(found) == ["cup", "sink"]
+    assert ("cup", "sink") in held(found, "ON") | held(found, "INSIDE")
