@@ -16,6 +16,7 @@ from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.omnigibson import joined
 from hearth.interop.scene_graphs.room_extents import with_boxes
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
@@ -46,7 +47,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(data, shape)
+    found = entities_of(joined(data), shape)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
