@@ -29,7 +29,7 @@ class Activity:
         graph: its home.
         nodes: instance -> node id; of a floor that of its room, as things on it are in the room.
         floors: instance of a floor -> node id of the floor itself.
-        fillings: what stands for what, and what was left out.
+        fillings: counts of stand-ins and of facts that were left out.
         left_out: instances and facts that are not in the home.
     """
 
@@ -144,7 +144,7 @@ class _Building:
             return
         if first not in self.ids:
             if first in self.classes or self.problem.instances.get(first):
-                self._note("facts about what has no class, left out", f"{fact.predicate} {first}")
+                self._note("facts about things of no class, left out", f"{fact.predicate} {first}")
             return
         me = self.floors.get(first, self.ids[first])
         if fact.predicate == "inroom":

@@ -18,7 +18,7 @@ from hearth.storage.input_files import read_input
 def read_activity(path: Path, knowledge: Knowledge) -> tuple[ReadGraph, str]:
     """Return the home that an activity describes, and its goal as `read_goal` reads it.
 
-    A goal that is none of ours is a fault of what is left out, and the goal is "".
+    A goal that our language can't say is among the faults, and the text is "".
 
     Raises:
         HearthError: the file can't be read, or is no problem; see `read_problem` and `environment_of`.

@@ -18,7 +18,7 @@ from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 
 Notes = list[tuple[str, Sequence[str]]]
-"""What was filled in or changed, with a word for each case."""
+"""Kinds of changes and additions, with a word for each case."""
 
 MARGIN = 0.6
 """Metres of floor around the things of a room whose own size is not known."""
