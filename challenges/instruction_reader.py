@@ -100,7 +100,15 @@ def _other() -> Mapping[str, re.Pattern[str]]:
 
 _VARIABLE = r"\w+(?: \(any [\w-]+\))?"
 
-_SLOTS = {"variable": _VARIABLE, "other": _VARIABLE, "ticks": "[0-9]{1,5}", "number": "[0-9]{1,5}"}
+_SLOTS = {
+    "variable": _VARIABLE,
+    "other": _VARIABLE,
+    "ticks": "[0-9]{1,5}",
+    "number": "[0-9]{1,5}",
+    "are": "is|are",
+    "sit": "sit or lie|sit|lie",
+    "who": r"anybody|person \w+",
+}
 """The patterns of slots that hold less than any text."""
 
 
@@ -175,7 +183,7 @@ class _Reader(NamedTuple):
             about == "who" and not str(who).startswith(AGENT)
         ):
             return None
-        terms = (_terms(about, who, place, thing) for thing, _ in things)
+        terms = (_terms(about, who, self.doer if about == "body" else place, thing) for thing, _ in things)
         numbers = (number or 1 for _, number in things)
         return tuple((Literal(name, each, negated), number) for each, number in zip(terms, numbers, strict=True))
 

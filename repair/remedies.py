@@ -1,5 +1,7 @@
 """The known repair of a failing step in words: `open the fridge first`."""
 
+from collections.abc import Sequence
+
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.step_phrases import say
 from hearth.repair.handlers.common import Edit, RepairContext, tick_start
@@ -40,7 +42,7 @@ def _in_words(context: RepairContext, edit: Edit, known: Knowledge) -> str:
         if removed == 1 and at == context.at and not inserted:
             return "leave this step out"
         if not removed and at == tick_start(context.program, context.at) and len(inserted) <= MOST_STEPS:
-            return f"{_joined([phrase(step, known) for step in inserted])} first"
+            return f"{_joined(_phrases(inserted, known))} first"
     row = known.repairs.get(edit.name)
     return row.say if row is not None else ""
 
@@ -49,6 +51,16 @@ def phrase(step: Step, known: Knowledge) -> str:
     """Return a step as people say it: `open the fridge`."""
     said = say(known.actions[step.action], [listed([ref.name]) for ref in step.objects])
     return said[:1].lower() + said[1:]
+
+
+def _phrases(steps: Sequence[Step], known: Knowledge) -> list[str]:
+    """Return steps as people say them; `it` is the only thing that the step before names."""
+    said, last = [], None
+    for step in steps:
+        words = phrase(step, known)
+        said.append(words.replace(listed([last.name]), "it") if last in step.objects and last is not None else words)
+        last = step.objects[0] if len(step.objects) == 1 else None
+    return said
 
 
 def _joined(phrases: list[str]) -> str:

@@ -14,6 +14,9 @@ MOST_NAMED = 4
 """Things that a sentence names."""
 
 
+USED_UP = "used up"
+"""The fact that an act found of a thing that is gone by action set 3: eaten, drunk, poured out or thrown away."""
+
 NO_USUAL_PLACE = "a usual place"
 """The fact that NO_PLACE expects, for classes without placements."""
 
@@ -43,6 +46,8 @@ def in_program(failure: Failure, program: Program, remedy: str = "", code: bool 
 def usual_remedy(failure: Failure) -> str:
     """Return what usually helps; "" where nothing does. Of a step that no earlier one prevents, what helps the step."""
     code = failure.code
+    if failure.actual == USED_UP:
+        return "use another"
     if code is Code.CONTRADICTION and " by no step" in failure.actual:
         code = Code.__members__.get(failure.expected.partition(":")[0], code)
     return REMEDIES.get(code, "")
@@ -61,6 +66,8 @@ def step_number(program: Program, failure: Failure) -> int:
 
 def why(failure: Failure) -> str:
     """Return why it failed, in words."""
+    if failure.actual == USED_UP:
+        return f"the {_names(failure)[0]} is used up"
     special = SPECIAL.get((failure.code, failure.expected)) or WHY[failure.code]
     if not isinstance(special, str):
         return special(failure)
@@ -196,6 +203,8 @@ SPECIAL: Mapping[tuple[Code, str], Words] = {
     (Code.NO_PLACE, "a home with geometry"): "the home does not say where in the room things are",
     (Code.CONFLICT, "one instruction an agent and tick"): "one character is to do two things at the same time",
     (Code.NOT_SIMULATED, "a character at a place"): "the home does not say where the character stands",
+    (Code.WRONG_STATE, "INSIDE(a, o)"): "the character is not in the {0}",
+    (Code.WRONG_STATE, "not INSIDE(a, o)"): "the character is already in the {0}",
     (Code.UNBOUND, "a step"): "the program has no step",
     (Code.DUPLICATE, "a program of its own"): "{actual}",
     (Code.UNPERTURBED, "a program of its own"): "{actual}",

@@ -79,6 +79,19 @@ class Trace(NamedTuple):
             return sum(found) == part.number
         return any(found) if part.join == "exists" else all(found)
 
+    def lost(self, part: Joined) -> bool:
+        """Return whether a joined part can't be reached any longer, whatever is done from now on.
+
+        So it is once a ban was broken: `always`, `never`, and `not` of actions; and after the last tick of `within`.
+        """
+        now = len(self.done)
+        if self.has(part, 0, now):
+            return False
+        if part.join == "not":
+            goal, home = part.goals[0], self.worlds[0].home
+            return not goal.parts and all(acts(literal, home) for literal, _ in goal)
+        return part.join in LASTING or (part.join == "within" and now >= part.ticks)
+
     def _paired(self, part: Joined, since: int, now: int) -> bool:
         """Return whether each thing of the class with fewer things has a partner of its own in the other class."""
         ones, others = (self._of_class(kind) for kind in (part.kind, part.other[1]))

@@ -86,6 +86,11 @@ def gone(world: World, i: int) -> World:
     return _forgotten(World(world.home, tuple(states), agents, nowhere), bit)
 
 
+def is_gone(world: World, i: int) -> bool:
+    """Return whether a thing of a world of action set 3 is used up."""
+    return bool(world.states[EVERY_STATE_ID["GONE"]] >> i & 1)
+
+
 def _forgotten(world: World, bit: int) -> World:
     agents = tuple(
         agent._replace(origins=tuple(entry for entry in agent.origins if not bit >> entry[0] & 1))

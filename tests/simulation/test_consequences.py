@@ -362,7 +362,7 @@ def test_nothing_appears_or_vanishes_but_what_is_eaten_or_drunk(seed):
     ("before", "step", "code", "words"),
     [
         (("Fold paper",), "Fold paper", Code.WRONG_STATE, "[Unfold] would change that"),
-        ((), "Leave bathtub", Code.WRONG_STATE, "not in the state"),
+        ((), "Leave bathtub", Code.WRONG_STATE, "not in the bathtub"),
         (("Break drinking_glass",), "Break drinking_glass", Code.WRONG_STATE, "which nothing undoes"),
         ((), "Cover bed blanket", Code.NOT_HOLDING, ""),
         ((), "Sweep table", Code.NOT_HOLDING, ""),
