@@ -40,10 +40,10 @@ def emit(value: Any) -> None:
 
 def write(file: Path, value: Any) -> None:
     """Write the output of `emit` into a file."""
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write as write_chosen
 
     file.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(file, _document(value).encode())
+    write_chosen(file, _document(value).encode())
 
 
 def _document(value: Any) -> str:
