@@ -36,7 +36,7 @@ def replacing(path: Path) -> Iterator[Path]:
     Raises:
         HearthError: UNWRITABLE: a pipe, a device or a socket has this name.
     """
-    _need_replaceable(path)
+    need_replaceable(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}{TEMPORARY}")
     try:
         yield temporary
@@ -45,7 +45,8 @@ def replacing(path: Path) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def _need_replaceable(path: Path) -> None:
+def need_replaceable(path: Path) -> None:
+    """Look whether a file can take the place of what has this name; errors as of `replacing`."""
     try:
         mode = path.lstat().st_mode
     except (OSError, ValueError):
