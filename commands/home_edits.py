@@ -78,7 +78,7 @@ def _check_ids(named: Sequence[int], known: Collection[int]) -> None:
 
 
 def _need_empty(graph: EnvironmentGraph, removed: Collection[int], moved: Collection[int]) -> None:
-    """Refuse to remove a room or a thing from under what stays: it would be nowhere."""
+    """Refuse to remove a room or a thing while other things stand in it or on it."""
     left: dict[int, set[int]] = {node: set() for node in removed}
     gone = {*removed, *moved}
     for source, relation, target in graph.edges:

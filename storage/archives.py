@@ -105,7 +105,7 @@ def _need_names_of_their_own(found: zipfile.ZipFile, place: str) -> None:
     twice, times = Counter(info.filename for info in members(found)).most_common(1)[0] if members(found) else ("", 1)
     if times > 1:
         message = f"{times} files in it have the name `{twice[:100]}`: by it only one of them can be read"
-        raise HearthError.of(Code.BAD_ARCHIVE, message, file=place, found=twice[:200], suggestion="pack it anew")
+        raise HearthError.of(Code.BAD_ARCHIVE, message, file=place, suggestion="pack it anew")
 
 
 UNPACK = "unpack it, and name the folder as a source"

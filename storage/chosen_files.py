@@ -1,4 +1,4 @@
-"""Files that a user names for what a command writes: whole or absent, through a link, into a pipe or a device."""
+"""Files that a user names for a command's output: whole or absent, through a link, into a pipe or a device."""
 
 import os
 import re
@@ -49,7 +49,7 @@ def write(path: Path, data: bytes) -> None:
 
 
 def _is_stream(path: Path) -> bool:
-    """Return whether nothing can take the place of what has this name."""
+    """Return whether this is the name of a pipe, a device or a socket."""
     if _descriptor(path) is not None:
         return True
     try:

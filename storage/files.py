@@ -46,7 +46,7 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def need_replaceable(path: Path) -> None:
-    """Look whether a file can take the place of what has this name; errors as of `replacing`."""
+    """Refuse a name that a pipe, a device or a socket has; errors as of `replacing`."""
     try:
         mode = path.lstat().st_mode
     except (OSError, ValueError):
