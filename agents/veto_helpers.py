@@ -141,12 +141,8 @@ class Veto(_Base):
     def _returns(self, place: Place, world: World) -> bool:
         """Return whether the helper may leave what it began: it comes back in time, because its work is there.
 
-        Something that must not be left alone, or that has been used and is not where the helper takes things now, is
-        ended before the helper leaves.
+        Something that has been used and is not where the helper takes things now is ended before the helper leaves.
         """
-        row = world.home.knowledge.hazards[place[0]]
-        if row.alone or row.asleep:
-            return False
         target = getattr(getattr(self, "subgoal", None), "target", None)
         return target in place[1] or _contents(world, place) == self._begun[place].contents
 

@@ -6,6 +6,7 @@ import typer
 
 from hearth.commands import (
     challenge_checks,
+    challenge_eai,
     challenge_export,
     challenge_household,
     challenge_infer_and_people,
@@ -25,6 +26,9 @@ app = typer.Typer(
     rich_markup_mode=None,
     help="Help somebody at home: tasks of Watch-And-Help and Online Watch-And-Help, agents, and their scores.",
 )
+
+
+app.add_typer(challenge_eai.app, name="eai")
 
 
 USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "owah_bodies": "test", "household": "valid_seen"}
