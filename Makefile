@@ -161,7 +161,7 @@ test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, bro
 HUBS := verifiers openenv trl inspect
 HUB = .venv/adapters/$*
 
-.venv/adapters/%/.ready: adapters/hearth-%/requirements.lock adapters/hearth-%/pyproject.toml pyproject.toml | $(READY)
+.venv/adapters/%/.ready: adapters/hearth-%/requirements.lock adapters/hearth-%/pyproject.toml | $(READY)
 	@rm -rf $(HUB) && $(PY) -m venv $(HUB)
 	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps --require-hashes -r $<
 	@[ $* != trl ] || $(HUB)/bin/python -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 2>/dev/null \

@@ -3,8 +3,8 @@
     python benchmarks/bodies_in_episodes.py [--episodes 300] [--without]
 
 Tasks of Watch-And-Help and of Online Watch-And-Help come in turn, with four helpers. Two bodies are in one place where
-their middles come nearer than two radii, less the tolerance, at the end of a tick or, where they walk, on the straight way
-of both during it. An agent waits for ever if it tries to walk and does not get on for `PATIENCE` ticks.
+their middles come nearer than two radii, less the tolerance, at the end of a tick or, where they walk, on the straight
+way of both during it. An agent waits for ever if it tries to walk and does not get on for `PATIENCE` ticks.
 """
 
 from __future__ import annotations

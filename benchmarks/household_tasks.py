@@ -127,12 +127,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, metavar="FILE")
     parser.add_argument("--limit", type=int, help="tasks of each split; all where it is left out")
+    parser.add_argument("--split", choices=sorted(settings()["splits"]), help="tasks of this one alone")
     parser.add_argument("--leaks", action="store_true", help="make the tasks and compare splits, check nothing else")
     parser.add_argument("--summary", action="store_true", help="check nothing, print what is in the file")
     asked = parser.parse_args()
     before = [json.loads(line) for line in asked.out.read_text().splitlines()] if asked.out.exists() else []
     done, known, began = {line["id"] for line in before}, default(), time.perf_counter()
-    splits = sorted(settings()["splits"], key="train".__eq__)  # the largest last
+    every = [asked.split] if asked.split else settings()["splits"]
+    splits = sorted(every, key="train".__eq__)  # the largest last
     left = [] if asked.summary else [
         each for split in splits for each in household_ids(split, asked.limit) if each not in done
     ]  # fmt: skip

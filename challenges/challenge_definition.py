@@ -23,7 +23,7 @@ from hearth.simulation.world.home import Home
 NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
 
-VARIANTS = ("owah_partial", "owah_messages", "owah_consequences")
+VARIANTS = ("owah_partial", "owah_messages", "owah_consequences", "owah_bodies")
 """Challenges beyond the thesis: each is one of `NAMES` with the changes in its file."""
 
 

@@ -153,10 +153,10 @@ class _Reader(NamedTuple):
             match = other[f"joined {join}"].fullmatch(text)
             if match and (parts := _bracketed(match["parts"])) is not None:
                 slots = match.groupdict()
-                (variable, kind), other = _called(slots.get("variable")), _called(slots.get("other"))
+                (variable, kind), second = _called(slots.get("variable")), _called(slots.get("other"))
                 ticks, number = (int(slots.get(name) or 0) for name in ("ticks", "number"))
                 goals = tuple(self.goal(part, depth + 1) for part in parts)
-                return Goal(parts=(Joined(join, goals, variable, ticks, kind, number, other),))
+                return Goal(parts=(Joined(join, goals, variable, ticks, kind, number, second),))
         return Goal(self._clause(text))
 
     def _clause(self, text: str) -> tuple[tuple[Literal[Name], int], ...]:

@@ -19,7 +19,7 @@ from hearth.challenges.tasks import Task
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.storage.files import write_bytes
+from hearth.storage import chosen_files
 from hearth.storage.input_files import read_input
 
 FORMAT = "hearth-tasks-1"
@@ -111,7 +111,7 @@ def write(path: Path, found: Suite) -> None:
     """Write a file of tasks."""
     import orjson
 
-    write_bytes(path, orjson.dumps(suite_data(found), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    chosen_files.write(path, orjson.dumps(suite_data(found), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
 
 
 def read(path: Path) -> Suite:

@@ -83,8 +83,9 @@ def draw_beliefs(
     from hearth.analysis.goal_belief_figure import drawn
     from hearth.challenges.helper_beliefs import beliefs
     from hearth.kb.loading.load import default
+    from hearth.storage.chosen_files import write
 
-    out.write_text(drawn(beliefs(task, record, helper, default()), actions), encoding="utf-8")
+    write(out, drawn(beliefs(task, record, helper, default()), actions).encode())
 
 
 def print_by_set(found: Sequence[dict[str, Any]]) -> None:

@@ -31,8 +31,10 @@ class Source(NamedTuple):
     assets: Path | None = None
 
 
-def is_house_file(path: Path) -> bool:
-    """Return whether a file is a house of ProcTHOR, or has one a line."""
+def is_of_others(path: Path) -> bool:
+    """Return whether a file is a house of ProcTHOR, has one a line, or is an activity of BEHAVIOR."""
+    if path.suffix == ".bddl" and path.is_file():
+        return True
     if not (path.suffix == ".json" or path.name.endswith((".jsonl", ".jsonl.gz"))) or not path.is_file():
         return False
     from hearth.interop.procthor.house_files import has_houses
@@ -49,20 +51,23 @@ def convert_filled(source: Source, out: Path, as_json: bool) -> None:
     from hearth.homes import home_export
     from hearth.homes.lint import lint
 
-    found = read_home(source)
+    found, goal = read_home(source)
     written = home_export.write_release(found.graph, out)
     faults = lint(found.graph, read_knowledge(None))
     if as_json:
         output.emit({
             "home": str(source.path), "file": out, "nodes": written, "edges": len(found.graph.edges),
             "filled": [filling._asdict() for filling in found.fillings], "left_out": found.left_out,
-            "ids": {str(number): own for number, own in found.ids.items()}, "faults": faults})  # fmt: skip
+            "ids": {str(number): own for number, own in found.ids.items()}, "faults": faults,
+            **({"goal": goal} if goal else {})})  # fmt: skip
         output.status(len(found.left_out) + len(faults), strict=True)
         return
     report(found.left_out, key=alike)
     output.table(("", "number", "such as"), _rows(found.fillings))
     left = f"; left out: {len(found.left_out):,}" if found.left_out else ""
     output.line(f"{out}: {output.counted(written, 'node')}, {output.counted(len(found.graph.edges), 'edge')}{left}")
+    if goal:
+        output.line(f"goal: {goal}")
     if faults:
         output.note(f"{output.counted(len(faults), 'fault')} of the home: `hearth home lint {out}` names them.")
     output.status(len(found.left_out) + len(faults), strict=True)
@@ -72,8 +77,19 @@ def _rows(fillings: Sequence[Filling]) -> list[tuple[str, int, str]]:
     return [(filling.what, filling.number, ", ".join(filling.examples)) for filling in fillings]
 
 
-def read_home(source: Source) -> ReadGraph:
-    """Return the home of a file: a house or a graph of another shape is read, one in the release's layout completed."""
+def read_home(source: Source) -> tuple[ReadGraph, str]:
+    """Return the home of a file, and the goal of an activity or "".
+
+    A house, an activity or a graph of another shape is read, a graph in the release's layout is completed.
+    """
+    if source.path.suffix == ".bddl":
+        from hearth.interop.bddl.read_activity import read_activity
+
+        return read_activity(source.path, read_knowledge(None))
+    return _read_graph(source), ""
+
+
+def _read_graph(source: Source) -> ReadGraph:
     from hearth.homes.node_defaults import filled
     from hearth.interop.procthor.house import is_house, read_house
     from hearth.interop.procthor.house_files import scene_of

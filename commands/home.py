@@ -152,7 +152,7 @@ def convert(
     With --fill, HOME may be a scene graph of any shape: of a robot, a scan or a simulator. What the file leaves out is
     filled in: rooms, places, states, boxes, nearness. A table counts what was understood, filled in and left out; the
     status is 1 if anything was left out. `classes: {rocket: null}` in a mapping file leaves it out without a word.
-    A house of ProcTHOR is recognized by itself.
+    A house of ProcTHOR and an activity of BEHAVIOR (.bddl) are recognized by themselves.
 
     \b
     Examples:
@@ -163,10 +163,10 @@ def convert(
       hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
       hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
-    from hearth.commands.filled_homes import Source, convert_filled, is_house_file
+    from hearth.commands.filled_homes import Source, convert_filled, is_of_others
     from hearth.homes import home_export, library
 
-    if fill or mapping is not None or scene is not None or is_house_file(Path(home)):
+    if fill or mapping is not None or scene is not None or is_of_others(Path(home)):
         convert_filled(Source(Path(home), mapping, scene or "", assets), out, as_json)
         return
     if out.name.endswith(".ids.csv"):

@@ -101,7 +101,13 @@ def run(program: str, home: str, seed: int) -> RunResult:
     found, place = _whole(program), home_named(home)
     trial, _ = as_given_or_sampled(found, place, checked_seed(seed), False, DEFAULT)
     whole = _plain(document(Outcome(found, place, trial), False))
-    return RunResult(**{name: whole[name] for name in RunResult.__annotations__})  # type: ignore[typeddict-item]
+    return RunResult(
+        home=home,
+        executable=whole["executable"],
+        steps=whole["steps"],
+        failure=whole["failure"],
+        changes=whole["changes"],
+    )
 
 
 def repair(program: str, home: str, seed: int) -> RepairResult:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
@@ -18,6 +18,8 @@ from hearth.version import VERSION
 from hearth.web.handler_threads import in_thread
 from hearth.web.limits import MOST_BODY, usual_rates
 from hearth.web.web_errors import WebError
+
+T = TypeVar("T")
 
 TOOLS = ("home", "observe", "act", "check", "run", "repair", "plan", "knowledge")
 """The tools, in the order in which they are listed."""
@@ -37,7 +39,7 @@ class Turn:
 
     Attributes:
         episode: the name of the episode.
-        observation: your goal, your surroundings, and commands that make sense now.
+        observation: your goal, the things around you, and commands that make sense now.
         reward: of the last command.
         done: no command can follow.
         won: the goal is reached.
@@ -119,7 +121,7 @@ class HearthTools:
         headers = ctx.headers
         return None if headers is None else headers.get("mcp-session-id")
 
-    async def _worked(self, rate: str, work: Callable[..., Any], *given: Any) -> Any:
+    async def _worked(self, rate: str, work: Callable[..., T], *given: Any) -> T:
         """Work in a thread, within the limits of a request.
 
         Raises:

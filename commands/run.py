@@ -38,10 +38,11 @@ def run(
 ) -> None:
     """Run a program in a home as it is, and print the changes of each step.
 
-    Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the run:
-    the output says why and names a fix. With --sample the home is changed and filled until the program
-    runs, and the additions are printed. The status is 1 if the program did not run as given, or if a goal is not
-    reached: a literal at the end, an action (`WATCH(television)`), an order (`then`), or alternatives.
+    Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the
+    run: the output says why and names a fix. With --sample the home is changed and filled until the program runs,
+    and the additions are printed; things are where lines take them from (`the milk out of the fridge`). The status
+    is 1 if the program did not run as given, or if a goal is not reached: a literal at the end, an action
+    (`WATCH(television)`), an order (`then`), or alternatives.
 
     Actions are read by --rules: ours (default), those of the release of 2018 (replay), those of VirtualHome 2.x
     (evolving_graph), or action set 3 (consequences: food is used up, and heat and water work in time). By

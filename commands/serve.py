@@ -2,20 +2,24 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
+import typer
+
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.commands.serve_virtualhome import serve_virtualhome
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
 
 
 def serve(
-    port: int = 8000,
-    out: Path = Path("collected"),
+    port: int | None = None,
+    out: Path | None = None,
     store: str = "",
     study: Path | None = None,
     films: Path | None = None,
@@ -28,6 +32,9 @@ def serve(
     worlds: int = 200,
     workers: int = 2,
     kb: Path | None = None,
+    virtualhome: bool = False,
+    homes: Path | None = None,
+    seed: int = 0,
     as_json: bool = False,
 ) -> None:
     """Serve the rooms for people, and the researcher's desk, on 127.0.0.1 or on --host behind a proxy.
@@ -40,6 +47,9 @@ def serve(
     With --text there are no rooms: programs create, reset and step worlds in text, over HTTP (docs/hubs.md). Nothing is
     kept. With --public, too, every request must show the desk's token.
 
+    --virtualhome serves scripts of VirtualHome instead: it answers in the place of the Unity program, by the same
+    messages, and records into DIR.
+
     \b
     Examples:
       hearth serve
@@ -48,9 +58,35 @@ def serve(
       hearth serve --public https://homes.example.org --proxy 127.0.0.1
       hearth serve --public https://homes.example.org --host 10.0.0.5 --proxy 10.0.0.2
       hearth serve --text --tasks wah:train
+      hearth serve --virtualhome --out recordings
     """
+    _check_kind(virtualhome, {"--store": store, "--study": study, "--films": films, "--public": public,
+                              "--proxy": proxy, "--text": text}, {"--homes": homes, "--seed": seed})  # fmt: skip
+    if virtualhome:
+        port = VIRTUALHOME_PORT if port is None else port
+        serve_virtualhome(port, out or Path("recordings"), homes, kb, seed, as_json)
+        return
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
+    proxy, hosts, host = proxy_of(proxy, public), public_hosts(public), host_of(host, public)
+    at, out = (host, ROOMS_PORT if port is None else port), out or Path("collected")
+    if text:
+        _refuse_options_of_rooms(store, study, films)
+        _serve_text(at, out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
+        return
+    _serve_rooms(at, out, store, (study, films), (public, hosts, proxy), kb, as_json)
+
+
+def _serve_rooms(
+    at: tuple[str, int],
+    out: Path,
+    store: str,
+    files: tuple[Path | None, Path | None],
+    by: tuple[str, tuple[str, ...], str],
+    kb: Path | None,
+    as_json: bool,
+) -> None:
+    """Serve the rooms for people until interrupted."""
     from hearth.studies.study_file import named
     from hearth.studies.study_trials import check_helpers
     from hearth.web.application import application
@@ -60,11 +96,7 @@ def serve(
     from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    proxy, hosts, host = proxy_of(proxy, public), public_hosts(public), host_of(host, public)
-    if text:
-        _refuse_options_of_rooms(store, study, films)
-        _serve_text((host, port), out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
-        return
+    (study, films), (public, hosts, proxy), (host, port) = files, by, at
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
@@ -82,6 +114,21 @@ def serve(
     output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
     sys.stdout.flush()
     run(app, where, proxy)
+
+
+def _check_kind(virtualhome: bool, of_rooms: Mapping[str, object], of_unity: Mapping[str, object]) -> None:
+    """Refuse options of the other server."""
+    wrong = [name for name, value in (of_rooms if virtualhome else of_unity).items() if value]
+    if wrong:
+        where = "without --virtualhome" if virtualhome else "with --virtualhome"
+        raise typer.BadParameter(f"it has an effect only {where}", param_hint=wrong[0])
+
+
+ROOMS_PORT = 8000
+"""The usual port of the rooms."""
+
+VIRTUALHOME_PORT = 8080
+"""The port at which clients of VirtualHome ask."""
 
 
 def _address(host: str, port: int) -> str:

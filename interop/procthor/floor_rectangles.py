@@ -17,7 +17,7 @@ MOST_CORNERS = 60
 def rectangles(corners: Sequence[Spot]) -> list[Rect]:
     """Return the rectangles of a floor, the largest first; [] where its corners are not right angles.
 
-    The largest rectangle within it is the first one, then the largest of what is left.
+    The largest rectangle within it is the first one, then the largest in the rest of it.
     """
     if len(corners) > MOST_CORNERS or any(not _is_straight(a, b) for a, b in _sides(corners)):
         return []

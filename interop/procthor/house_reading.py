@@ -157,7 +157,7 @@ class _Reading:
         ]
 
     def _things(self, pieces: Sequence[Piece], shell: Shell) -> dict[str, Thing]:
-        """Return the objects with a class of ours, by their ids, holders before what they hold."""
+        """Return the objects with a class of ours, by their ids, each behind its holder."""
         found: dict[str, Thing] = {}
         ways: dict[str, list[str]] = {}
         unsized: list[str] = []

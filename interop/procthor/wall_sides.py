@@ -32,7 +32,7 @@ class Side(NamedTuple):
 
     @property
     def along(self) -> bool:
-        """Whether it runs from west to east."""
+        """Return whether it runs from west to east."""
         return abs(self.end[0] - self.start[0]) >= abs(self.end[1] - self.start[1])
 
     def within(self, rect: Rect) -> tuple[float, float]:

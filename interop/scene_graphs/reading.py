@@ -11,11 +11,12 @@ from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
 from hearth.interop.scene_graphs import completion
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
-from hearth.interop.scene_graphs.entities import Entity, entities_of
+from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.omnigibson import joined
 from hearth.interop.scene_graphs.room_extents import with_boxes
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
@@ -46,7 +47,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(data, shape)
+    found = entities_of(joined(data), shape)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
@@ -94,6 +95,7 @@ class _Reading:
         classes = {id(entity): class_of(entity.label, self.shape, self.knowledge) for entity in entities}
         kept = [entity for entity in entities if classes[id(entity)].name]
         self._note_classes(entities, classes)
+        self._name_shared_ids(entities)
         if not kept:
             raise HearthError(self.left_out[:20])
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
@@ -145,6 +147,16 @@ class _Reading:
         for by, what in CLASSES_BY.items():
             self.note(what, ways.get(by, []))
 
+    def _name_shared_ids(self, entities: Sequence[Entity]) -> None:
+        """Name the entries of a list whose id is that of another entry of the list."""
+        seen: dict[tuple[str, str], str] = {}
+        for entity in entities:
+            for value in values_of(entity, self.shape.fields["id"])[:1]:
+                first = seen.setdefault((entity.path.rpartition("[")[0], str(value)), entity.path)
+                if first != entity.path:
+                    message = f"its id `{str(value)[:60]}` is that of {first}, too"
+                    self._leave(Code.DUPLICATE, message, entity.path, "give each an id of its own")
+
     def _singly_held(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         edges, left = with_single_holders(graph, self.knowledge)
         names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes}
@@ -161,7 +173,10 @@ class _Reading:
             if id(entity) in kept and self.knowledge.is_room(name):
                 found.setdefault(text, Entry(Entity("", (), text, text, {}), name))
             elif id(entity) in kept and class_of(text, self.shape, self.knowledge).by != "building":
-                self._leave(Code.BAD_GRAPH, f"it stands in or on `{text}`, which is nothing in the file", entity.path)
+                rooms = ", ".join(sorted(filter(self.knowledge.is_room, self.knowledge.objects)))
+                message = f"it stands in or on `{text}`, which is nothing in the file and no room of ours"
+                self._leave(Code.UNKNOWN_OBJECT, message, entity.path,
+                            f"`classes:` of a mapping file names one of {rooms}")  # fmt: skip
         self.note("rooms that things only name", list(found))
         if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
             name = completion.room_for([entry.class_name for entry in entries], self.knowledge)
@@ -197,6 +212,8 @@ class _Reading:
         self.note("relations without a counterpart, left out", [word for _, word in ties.unknown_words])
         for path, text in ties.dangling:
             self._leave(Code.BAD_GRAPH, f"a relation names `{text}`, which is nothing in the file", path)
+        for path, text in dict.fromkeys(ties.selves):
+            self._leave(Code.LOOP, f"`{text}` is on or in itself", path, "name another holder, or none")
         for path, text in ties.ambiguous:
             message = f"a relation names `{text}`, and several things are called so"
             self._leave(Code.DUPLICATE, message, path, "give each thing an id of its own")

@@ -18,7 +18,7 @@ from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
 
 Notes = list[tuple[str, Sequence[str]]]
-"""What was filled in or changed, with a word for each case."""
+"""Kinds of changes and additions, with a word for each case."""
 
 MARGIN = 0.6
 """Metres of floor around the things of a room whose own size is not known."""
@@ -49,8 +49,11 @@ def with_boxes(
         HearthError: as `lay_out`.
     """
     own, notes = _with_own_boxes(graph, knowledge)
-    cut, last = 0, None
-    for extents in () if own is None else _extents(own, floors):
+    if own is None:
+        return _laid_out(graph, file, knowledge, notes)
+    cut = 0
+    last: tuple[EnvironmentGraph, Notes] | None = None
+    for extents in _extents(own, floors):
         found = _with_rooms(own, extents.boxes)
         out_of_reach = completion.unreachable(found, knowledge)
         named = [node.class_name for node in own.nodes if node.id in extents.boxes]
@@ -65,6 +68,11 @@ def with_boxes(
         return _with_rooms(last[0], boxes), last[1]
     if cut:
         notes.append(("boxes of the file left out; things that can't be walked to", ["box"] * cut))
+    return _laid_out(graph, file, knowledge, notes)
+
+
+def _laid_out(graph: EnvironmentGraph, file: str, knowledge: Knowledge, notes: Notes) -> tuple[EnvironmentGraph, Notes]:
+    """Return a graph with doors and boxes that its relations suggest, and the notes of that."""
     doors, count = completion.with_doors(completion.without_boxes(graph), max(node.id for node in graph.nodes) + 1)
     made = completion.laid_out(doors, file, knowledge)
     boxed = [node.class_name for node in made.nodes if node.box is not None]

@@ -35,12 +35,13 @@ def sources_of_steps(known: Knowledge, program: Program, lines: Sequence[str]) -
 
     A line that names several places says of none of its steps which is meant.
     """
-    takes, found = known.group("takes"), []
+    takes = known.group("takes")
+    found: list[tuple[int, str]] = []
     for number, step in enumerate(program.steps):
         at = program.line(number)
         named = {place for place, _ in sources(known, lines[at - 1].lower())} if 0 < at <= len(lines) else set()
         if step.action in takes and step.objects and len(named) == 1:
-            found.append((number, *named))
+            found.append((number, named.pop()))
     return tuple(found)
 
 

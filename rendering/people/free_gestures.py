@@ -1,11 +1,11 @@
-"""Gestures without a thing: places of the palms beside the body, a stoop, feet, and what a body does as a whole."""
+"""Gestures without a thing: places of the palms, a stoop, feet, and motions of the whole body."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
 from math import pi, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.people.body_pose import BodyPose, Foot, Hand
@@ -30,11 +30,13 @@ class FreeGesture(NamedTuple):
     feet: tuple[Foot, Foot] | None
 
 
-def _read(row: Mapping[str, list[float]]) -> FreeGesture:
-    palms = {side: ((x, y, z), grip) for side in ("right", "left") if side in row for x, y, z, grip in [row[side]]}
-    gaze, feet, stoop = row.get("gaze"), row.get("feet"), row.get("stoop")
-    stands = None if feet is None else tuple(Foot(x, z, lift) for x, z, lift in feet)  # type: ignore[misc]
-    return FreeGesture(palms, stoop, gaze and tuple(gaze), stands)  # type: ignore[arg-type]
+def _read(row: Mapping[str, Any]) -> FreeGesture:
+    palms = {
+        side: ((row[side][0], row[side][1], row[side][2]), row[side][3]) for side in ("right", "left") if side in row
+    }
+    feet = (Foot(*row["feet"][0]), Foot(*row["feet"][1])) if "feet" in row else None
+    gaze = (row["gaze"][0], row["gaze"][1], row["gaze"][2]) if "gaze" in row else None
+    return FreeGesture(palms, row.get("stoop"), gaze, feet)
 
 
 FREE: dict[str, FreeGesture] = {

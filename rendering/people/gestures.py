@@ -12,9 +12,10 @@ class Gesture:
 
     Attributes:
         hand: what the hands do (step_hands_and_gaze.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`,
-            `push`, `wear`, `wave`, `free` (a row of free_gestures.yaml), or "" (nothing but carrying).
+            `push`, `wear`, `wave`, `free`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
         free: the row of free_gestures.yaml.
+        enters: whether the actor ends in the middle of the object.
         motion: of the hands while they act: `rub`, `keys`, `beat`, `shake`, `circle`, of the body `hop`, `sway`, or ""
             (none).
         seconds: for which they act.
@@ -45,6 +46,7 @@ class Gesture:
     swings: bool = False
     into: bool = False
     free: str = ""
+    enters: bool = False
 
 
 LOOK = Gesture()

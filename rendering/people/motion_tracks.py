@@ -15,8 +15,8 @@ from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.foot_steps import planted, stepping
-from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.free_gestures import whole_body
+from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.lying_down import lying_down, made_ready
 from hearth.rendering.people.motion_along_routes import Place, angle, between, eased
@@ -115,7 +115,7 @@ RATES = {"hop": 0.9, "beat": 2.4, "shake": 2.2, "circle": 1.1}
 """Motions of a hand, times a second."""
 
 FAR = {"hop": 0.05, "beat": 0.06, "shake": 0.09, "circle": 0.05}
-"""How far the hand goes from its place, metres."""
+"""Distance of the hand from its place at most, metres."""
 
 
 def acted(actor: Actor, gesture: Gesture) -> Segment:

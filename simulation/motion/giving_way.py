@@ -57,7 +57,7 @@ PLACES = (0.55, -0.55, 1.1, -1.1)
 
 
 def seated_apart(world: World, number: int) -> World:
-    """Return the world in which a character that shares a seat is beside the others, where the seat is wide enough."""
+    """Return the world in which a character keeps apart from others on its seat, if that is wide enough."""
     agent = world.agents[number]
     pose = agent.pose
     others = [each.pose.point for k, each in enumerate(world.agents) if k != number and each.pose is not None]
@@ -65,7 +65,9 @@ def seated_apart(world: World, number: int) -> World:
         return world
     box = world.home.node(lowest(agent.on)).box
     angle = math.radians(pose.yaw)
-    for place in PLACES if box is not None else ():
+    if box is None:
+        return world
+    for place in PLACES:
         x, z = pose.x + place * math.cos(angle), pose.z - place * math.sin(angle)
         inside = all(
             abs(now - middle) <= size / 2

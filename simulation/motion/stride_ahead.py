@@ -68,7 +68,7 @@ SHARES = (1.0, 0.5, 0.25, 0.125)
 """The parts of a stride that are tried around another character."""
 
 SLACK = 0.04
-"""How much nearer than both bodies need a stride around another may come, since it cuts corners, metres."""
+"""Allowed shortfall of the distance in a stride around another character, which cuts corners, metres."""
 
 
 def kept_apart(before: World, now: World, after: World, number: int) -> World:

@@ -42,6 +42,15 @@ from hearth.simulation.world.digest import digest
 SPLITS = tuple(settings()["splits"])
 TRAIN = 20
 OTHERS = 10
+PUBLISHED = {
+    "train": "a56331ceeb8eab2235920d0b8f71b0b9",
+    "valid_seen": "285d7b4fe2550cdc86621e1d4ad49dd7",
+    "valid_unseen": "c4ce54853e365b0f1dc08210195ec0f6",
+    "valid_words": "228da3aaaa789032d27fabf017dfa032",
+    "test_seen": "25c0aed60b21a5375ef429f47c4906e6",
+    "test_unseen": "dc4d15fd418a44930ff84bf261edf0f4",
+}
+"""Digests of the first ten tasks of each split."""
 
 
 @pytest.fixture(scope="module")
@@ -59,6 +68,11 @@ def every(drawn):
 def test_there_are_twelve_thousand_ids_or_more():
     ids = [task_id for split in SPLITS for task_id in household_ids(split)]
     assert len(set(ids)) == len(ids) >= 12_000
+
+
+@pytest.mark.parametrize("split", SPLITS)
+def test_the_published_tasks_stay_as_they_are(drawn, split):
+    assert digest_of(drawn[split][:10]) == PUBLISHED[split]
 
 
 def test_every_family_is_there(drawn):

@@ -22,7 +22,8 @@
 
   function told(control) {
     const inHead = control.matches("a.skip") || control.closest("header.top");
-    return { page: inHead ? "every page" : folded(location.pathname), control: named(control) };
+    const page = folded(location.pathname).replace(/\/new$/, "/"); // a form that was refused is shown again
+    return { page: inHead ? "every page" : page, control: named(control) };
   }
 
   const DEVELOPERS = /\b[A-Z]{2,}_[A-Z_]+\b|\b[A-Za-z]+_[a-z_]+\b|\[[A-Z][a-z]+\]|<[a-z_]+> \(/g;

@@ -169,7 +169,7 @@ def called(home: Home) -> tuple[str, ...]:
     names = [_called(home, i) for i in range(len(home.ids))]
     places: dict[str, list[int]] = {}
     for i in indices(home.everything):
-        if home.node(i).category not in UNTOUCHED - {ROOM_CATEGORY}:  # nobody tells pieces of floor apart
+        if home.node(i).category not in UNTOUCHED - {ROOM_CATEGORY}:  # pieces of floor look alike
             places.setdefault(names[i], []).append(i)
     for same in places.values():
         for number, i in enumerate(same if len(same) > 1 else (), 1):
@@ -248,10 +248,10 @@ def _character(pose: Any, view: View) -> dict[str, Any]:
 
 def _last(last: LastAction, view: View) -> dict[str, Any]:
     """Return the last act, and in words for people why it failed, if it did."""
-    told = last_json(last, view)
+    found = last_json(last, view)
     if last.failure is not None:
-        told["failure"]["words"] = sentence(seen_failure(last.failure, view), code=False)
-    return told
+        found["failure"]["words"] = sentence(seen_failure(last.failure, view), code=False)
+    return found
 
 
 def _point(pose: Pose) -> list[float]:

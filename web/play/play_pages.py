@@ -140,7 +140,6 @@ def game_page(visit: Visit) -> Response:
         interface=game.trial.interface,
         title=game.trial.title,
         instruction=game.trial.instruction if number == 0 else "",
-        home=home_words(game.trial.task.home),
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,
         studied=live.stored.blind,

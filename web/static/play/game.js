@@ -267,6 +267,7 @@ function trouble(fault) {
     button.addEventListener("click", () => connection.takeOver());
     tell("note", `${say("other_tab")} `, button);
   } else said.textContent = refused(fault);
+  view?.trouble?.(fault);
 }
 
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
