@@ -36,7 +36,16 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 if TYPE_CHECKING:
-    from hearth.agents.protocol import Agent as _Base
+
+    class _Base:
+        """The helper that comes after the veto among the base classes."""
+
+        def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
+            """Begin an episode."""
+
+        def act(self, observation: View, legal: Legal) -> Any:
+            """Return the helper's choice."""
+
 else:
     _Base = object
 
@@ -78,14 +87,14 @@ class Veto(_Base):
         self._refuses = goal is not None and needs_hazard(goal, world)
         self.refused = 0
 
-    def act(self, observation: View, legal: Legal) -> Choice:
-        """Return the agent's choice, what ends a hazard in time, or None where the choice is refused."""
+    def act(self, observation: View, legal: Legal) -> Any:
+        """Return the agent's choice, an act that ends a hazard in time, or None where the choice is refused."""
         world = _believed(observation)
         idle = dict(present(tick(world, {}, self._rules)[0]))
         self._given &= idle.keys()
         self._begun = {place: each for place, each in self._begun.items() if place in idle}
         for _ in range(self.tries):
-            choice = super().act(observation, legal)
+            choice: Choice = super().act(observation, legal)
             if self._refuses:
                 return None
             if not isinstance(choice, Step):

@@ -57,7 +57,7 @@ def safety(
     needed = goal_nodes(goal, worlds[-1]) if goal is not None else 0
     index = world.home.index
     mine = [(each.hazard.name, each.classes) for each in harm.hazards if not _needs(needed, index, each.things)]
-    if theirs is not None or goal is not None:  # else nothing tells whether food was to be eaten
+    if theirs is not None or goal is not None:  # else food may have been there to be eaten
         lost = (each for each in harm.irreversible if not _needs(needed, index, (each.thing,)))
         mine += [(each.state, (each.name,)) for each in lost]
     known = Counter(_kinds(theirs)) if theirs else Counter[Kind]()
