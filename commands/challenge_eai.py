@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import inputs, output
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -133,6 +133,42 @@ def plan(wheel: Path, limit: int | None = None, out: Path | None = None, as_json
         output.emit(found)
     else:
         output.figures({**found, "without_a_plan": ", ".join(found["without_a_plan"]) or "none"})
+
+
+@app.command()
+def tasks(count: int = 500, seed: int = 0, *, out: Path, as_json: bool = False) -> None:
+    """Write the interface's four tasks for our own homes and programs, with prompts and their fingerprints.
+
+    Each goal is what a program of the corpus changes in a home; the engine proves that it does not hold before and
+    holds after. 500 tasks take some minutes.
+
+    \b
+    Example:
+      hearth challenge eai tasks --count 20 --out own.json
+    """
+    from collections import Counter
+
+    from hearth.analysis.random_program_home_pairs import pairs
+    from hearth.interop.eai.own_tasks import own_task
+    from hearth.kb.loading.load import default
+
+    found: dict[str, dict[str, Any]] = {}
+    tried = 0
+    for execution, home, _ in pairs(inputs.paths([]), default(), seed):
+        tried += 1
+        task = own_task(execution, home)
+        if task is not None:
+            found.setdefault(task["id"], task)
+        if len(found) >= count:
+            break
+    output.write(out, list(found.values()))
+    homes = Counter(task["home"] for task in found.values())
+    listed = ", ".join(f"{name} {number}" for name, number in sorted(homes.items()))
+    figures = {"tasks": len(found), "programs_that_ran": tried, "prompts": 4 * len(found), "homes": listed, "out": out}
+    if as_json:
+        output.emit(figures)
+    else:
+        output.figures(figures)
 
 
 def _say(kind: str, finding: Any) -> None:
