@@ -7,13 +7,20 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from hearth.grounding.grounded_run import attempt
+from hearth.homes.library import load_graph
+from hearth.kb.action_grammar import check
+from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph import Edge
 from hearth.schemas.program import Program
-from hearth.schemas.syntax import print_lines
+from hearth.schemas.syntax import parse_programs, print_lines
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.engine import Execution, run
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goals import Progress
+from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 
 KEPT = ("ON", "INSIDE", "HOLDS_RH", "HOLDS_LH")
@@ -33,10 +40,11 @@ ASKED: Mapping[str, str] = {
 """The requests of the four abilities."""
 
 
-def own_task(execution: Execution, home: str) -> dict[str, Any] | None:
+def own_task(execution: Execution, home: str, seed: int = 0) -> dict[str, Any] | None:
     """Return the task that a program poses in a home; None where it changes nothing that lasts, or too much.
 
-    The goal is what the program changed. The engine proves it: it does not hold at the start, and does at the end.
+    With the seed the program gives its environment again, in which answers are judged. The goal is what the program
+    changed. The engine proves it: it does not hold at the start, and does at the end.
     """
     start, end = execution.worlds[0], execution.final
     facts = _facts(start, end)
@@ -49,11 +57,12 @@ def own_task(execution: Execution, home: str) -> dict[str, Any] | None:
     task = {
         "id": f"{home}/{hashlib.sha256(''.join(print_lines(execution.program)).encode()).hexdigest()[:12]}",
         "home": home,
+        "seed": seed,
         "title": execution.program.title,
         "description": execution.program.description,
         "goal": goal,
         "things": names,
-        "program": list(print_lines(execution.program)),
+        "program": list(print_lines(execution.program.unbound())),
     }
     actions = sorted({step.action for step in execution.program.steps})
     prompts = {ability: _prompt(ability, task, actions) for ability in ASKED}
@@ -117,11 +126,46 @@ def fingerprint(text: str) -> str:
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
 
+def start_of(task: Mapping[str, Any], knowledge: Knowledge) -> Execution:
+    """Return the run that a task was made of, with the world at its start.
+
+    Raises:
+        HearthError: CONDITION_UNMET: the program no longer gives the environment.
+    """
+    home = Home.from_graph(load_graph(task["home"], knowledge), task["home"], knowledge)
+    parsed = parse_programs(f"{task['title']}\n{task['description']}\n\n\n" + "\n".join(task["program"]) + "\n")
+    trial = attempt(parsed.programs[0], home, task["seed"])
+    if isinstance(trial, Failure):
+        raise HearthError.of(Code.CONDITION_UNMET, f"task {task['id']} cannot be made again")
+    return trial.execution
+
+
+def plan_verdict(task: Mapping[str, Any], answer: str, knowledge: Knowledge) -> tuple[bool, bool]:
+    """Return whether every step of an answer's plan is done, and whether the goal then holds."""
+    execution = start_of(task, knowledge)
+    start = execution.worlds[0]
+    try:
+        lines = json.loads(_plain(answer))["plan"]
+        program = parse_programs("Plan\n\n\n\n" + "\n".join(map(str, lines)) + "\n")
+        checked, faults = check(program.programs[0], knowledge)
+    except (ValueError, KeyError, TypeError, IndexError, RecursionError):
+        return False, False
+    if faults or program.diagnostics or not checked.steps:
+        return False, False
+    done = run(start, checked, execution.rules)
+    reached = done.failure is None and Progress.of(read_goal(task["goal"], start.home), done).satisfied
+    return done.failure is None, reached
+
+
+def _plain(answer: str) -> str:
+    return answer.strip().removeprefix("```json").strip("`").strip()
+
+
 def interpretation_counts(task: Mapping[str, Any], answer: str) -> tuple[int, int, int]:
     """Return the facts of an answer that are right, wrong and left out."""
     wanted = {fact.replace(" ", "") for fact in str(task["goal"]).split(" and ")}
     try:
-        found = json.loads(answer.strip().removeprefix("```json").strip("`").strip())["goal"]
+        found = json.loads(_plain(answer))["goal"]
         given = {str(fact).replace(" ", "") for fact in found}
     except (ValueError, KeyError, TypeError, RecursionError):
         given = set()
