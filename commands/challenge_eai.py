@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import inputs, output
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -133,6 +133,82 @@ def plan(wheel: Path, limit: int | None = None, out: Path | None = None, as_json
         output.emit(found)
     else:
         output.figures({**found, "without_a_plan": ", ".join(found["without_a_plan"]) or "none"})
+
+
+@app.command()
+def tasks(count: int = 500, seed: int = 0, *, out: Path, as_json: bool = False) -> None:
+    """Write the interface's four tasks for our own homes and programs, with prompts and their fingerprints.
+
+    Each goal is what a program of the corpus changes in a home; the engine proves that it does not hold before and
+    holds after. 500 tasks take some minutes.
+
+    \b
+    Example:
+      hearth challenge eai tasks --count 20 --out own.json
+    """
+    from collections import Counter
+
+    from hearth.analysis.random_program_home_pairs import pairs
+    from hearth.interop.eai.own_tasks import own_task
+    from hearth.kb.loading.load import default
+
+    found: dict[str, dict[str, Any]] = {}
+    tried = 0
+    for execution, home, _ in pairs(inputs.paths([]), default(), seed):
+        tried += 1
+        task = own_task(execution, home, seed)
+        if task is not None:
+            found.setdefault(task["id"], task)
+        if len(found) >= count:
+            break
+    output.write(out, list(found.values()))
+    homes = Counter(task["home"] for task in found.values())
+    listed = ", ".join(f"{name} {number}" for name, number in sorted(homes.items()))
+    figures = {"tasks": len(found), "programs_that_ran": tried, "prompts": 4 * len(found), "homes": listed, "out": out}
+    if as_json:
+        output.emit(figures)
+    else:
+        output.figures(figures)
+
+
+@app.command()
+def score(file: Path, answers: Path, as_json: bool = False) -> None:
+    """Score a model's answers to our own tasks: goals by precision, recall and F1, plans by running them.
+
+    ANSWERS has a line of JSON for each answer: {"id": TASK, "ability": NAME, "answer": TEXT}. Answers to
+    `goal_interpretation` and `action_sequencing` are scored; of others the number is printed.
+
+    \b
+    Example:
+      hearth challenge eai score own.json answers.jsonl
+    """
+    import orjson
+
+    from hearth.interop.eai.goal_interpretation import Counts
+    from hearth.interop.eai.own_tasks import interpretation_counts, plan_verdict
+    from hearth.kb.loading.load import default
+    from hearth.storage.input_files import read_input
+
+    known = default()
+    tasks_by_id = {task["id"]: task for task in orjson.loads(read_input(file))}
+    counts, plans, others = Counts(), [], 0
+    for line in read_input(answers).splitlines():
+        row = orjson.loads(line) if line.strip() else {}
+        task, ability = tasks_by_id.get(row.get("id")), row.get("ability")
+        if task is not None and ability == "goal_interpretation":
+            counts = counts.plus(Counts(*interpretation_counts(task, str(row.get("answer", "")))))
+        elif task is not None and ability == "action_sequencing":
+            plans.append(plan_verdict(task, str(row.get("answer", "")), known))
+        elif row:
+            others += 1
+    precision, recall, f1 = counts.scores()
+    shares = [round(100 * sum(each[k] for each in plans) / max(len(plans), 1), 2) for k in (0, 1)]
+    figures = {"goal_precision": precision, "goal_recall": recall, "goal_f1": f1, "plans": len(plans),
+               "plans_that_run": shares[0], "plans_that_reach_the_goal": shares[1], "not_scored": others}  # fmt: skip
+    if as_json:
+        output.emit(figures)
+    else:
+        output.figures(figures)
 
 
 def _say(kind: str, finding: Any) -> None:

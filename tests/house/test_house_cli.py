@@ -28,8 +28,16 @@ def call(*arguments, **options):
 def every_command():
     """The words of each command that does something: `("kb", "show")`."""
     for name in cli.COMMANDS_BY_NAME:
-        names = getattr(cli.load(name), "commands", None)
-        yield from [(name, sub) for sub in names] if names else [(name,)]
+        yield from words_of((name,), cli.load(name))
+
+
+def words_of(words, command):
+    """The words of each command of a group, and of the groups within it: `("challenge", "eai", "table")`."""
+    names = getattr(command, "commands", None)
+    if not names:
+        yield words
+    for name, each in (names or {}).items():
+        yield from words_of((*words, name), each)
 
 
 COMMANDS = list(every_command())
@@ -83,7 +91,10 @@ def test_every_parameter_has_its_entry_and_every_entry_its_parameter():
         module, attribute = entry.place.split(":")
         cli.load(name)
         found = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
-        each = [one.callback for one in found.registered_commands] if isinstance(found, typer.Typer) else [found]
+        each = [found]
+        if isinstance(found, typer.Typer):
+            apps = (found, *(group.typer_instance for group in found.registered_groups))
+            each = [one.callback for app in apps for one in app.registered_commands]
         functions.update({(one.__module__.rpartition(".")[2], one.__name__): one for one in each})
     used = set()
     for (module, function), command in functions.items():
