@@ -39,7 +39,7 @@ OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
 """Relations of the Embodied Agent Interface, by its names."""
 
 QUANTIFIERS = ("exists", "forall", "forn", "forpairs")
-"""Words of goals about some things, all, exactly so many, or pairs."""
+"""Words of goals about some things, all, an exact number, or pairs."""
 
 VARIABLES = 2
 """Variables within one another: each multiplies the cost by the number of things."""

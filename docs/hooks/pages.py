@@ -27,7 +27,8 @@ ENTRY_POINTS = {
     "Knowledge": ("hearth:knowledge", "hearth:find", "hearth:understand"),
     "Homes": (
         "hearth:home", "hearth:load_graph", "hearth:Home.from_graph", "hearth:generate", "hearth.homes.lint:lint",
-        "hearth.interop.scene_graphs.reading:read_scene", "hearth.schemas.graph_json_schema:graph_schema",
+        "hearth.interop.scene_graphs.reading:read_scene", "hearth.interop.bddl.problem:read_problem",
+        "hearth.schemas.graph_json_schema:graph_schema",
     ),
     "Programs in a home": (
         "hearth:parse_program", "hearth:parse_steps", "hearth:bind", "hearth:World", "hearth:run", "hearth:edit",

@@ -1,4 +1,4 @@
-"""Goals about things of a class: some, all, exactly so many, or pairs one to one."""
+"""Goals about things of a class: some, all, an exact number, or pairs one to one."""
 
 import pytest
 
