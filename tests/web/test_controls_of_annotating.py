@@ -299,8 +299,6 @@ def test_the_desk_of_each_room(page, served):
         with page.expect_download():
             press(page, link(page, name))
     press(page, "summary")
-    go(page, page.get_by_role("button", name="Give away"))
-    go(page, page.get_by_role("button", name="Delete"))
     page.goto(f"{served.address}/desk/play/")
     with page.expect_download():
         press(page, page.locator("tbody a").first)
@@ -316,6 +314,9 @@ def test_the_desk_of_each_room(page, served):
     rows = page.request.get(f"{served.address}/desk/annotate/descriptions.csv").text().splitlines()
     page.fill("#id", rows[1].split(",")[0])
     go(page, button(page, "Erase it"))
+    page.goto(f"{served.address}/desk/study/")
+    go(page, page.get_by_role("button", name="Give away"))
+    go(page, page.get_by_role("button", name="Delete"))
 
 
 def test_no_control_of_these_pages_is_without_a_test(records, width):
