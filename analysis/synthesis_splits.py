@@ -12,8 +12,8 @@ from hearth.analysis.synthesis import Synthetic
 from hearth.datasets.format.near_duplicates import near_texts
 from hearth.datasets.format.split_columns import NEAR, normalised
 from hearth.schemas.rng import derive
+from hearth.storage import chosen_files
 from hearth.storage.csv_files import rows_writer
-from hearth.storage.files import write_bytes
 
 SPLITS = {
     "paraphrases": "test: descriptions that use the paraphrases held out, wherever a clause has such",
@@ -140,4 +140,4 @@ def write(rows: Sequence[SplitText], seed: int, path: Path) -> None:
     write_rows = rows_writer(table)
     write_rows([("split", "program_id", "description", "part")])
     write_rows((row.split, f"synthetic:{seed}:{row.program}", row.description, row.part or "") for row in rows)
-    write_bytes(path, table.getvalue().encode())
+    chosen_files.write(path, table.getvalue().encode())

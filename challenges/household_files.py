@@ -12,7 +12,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.goal_text import read_goal
-from hearth.storage.files import write_bytes
+from hearth.storage import chosen_files
 from hearth.storage.input_files import read_input
 
 FORMAT = "hearth-household-1"
@@ -50,7 +50,7 @@ def write_tasks(path: Path, tasks: Sequence[HouseholdTask]) -> None:
     import orjson
 
     data = tasks_data(tasks)
-    write_bytes(path, orjson.dumps(data, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    chosen_files.write(path, orjson.dumps(data, option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
 
 
 def read_tasks(path: Path, knowledge: Knowledge) -> tuple[HouseholdTask, ...]:

@@ -16,8 +16,10 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.rng import rng
-from hearth.storage.files import TEMPORARY, commit
+from hearth.storage.chosen_files import followed
+from hearth.storage.files import TEMPORARY, commit, need_replaceable
 from hearth.storage.input_files import read_lines
+from hearth.storage.lock import locked_file
 from hearth.storage.parallel import Seen, unseen
 
 INFERRED = {"inferred": "actions", "inferred_states": "states"}
@@ -53,9 +55,21 @@ def run(
         over: where episodes are played; over the processes of this machine where None.
 
     Raises:
-        HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE.
+        HearthError: BAD_ARGUMENT: there are no such agents, or too few tasks for a random goal; UNWRITABLE; LOCKED:
+            another run writes the file.
     """
     header = Header(suite, _with_room(suite, lineup.checked()), seeds, code=lineup.code, language=lineup.language)
+    out = followed(out) if out.is_symlink() else out
+    need_replaceable(out)
+    with locked_file(out, "playing episodes"):
+        return _played(header, out, known, workers, seen, alone, over or here(workers))
+
+
+def _played(
+    header: Header, out: Path, known: Known, workers: int, seen: Seen, alone: Results | None, over: Spread
+) -> Results:
+    """Play what the file of results lacks."""
+    suite, lineup = header.suite, header.lineup
     before: dict[tuple[str, int, bool], Record] = {}
     if out.exists() and next(read_lines(out), b"") == first_line(header):
         found = read(out)
@@ -73,7 +87,7 @@ def run(
         if not kept:
             file.truncate(0)
             file.write(first_line(header))
-        for done, record in enumerate(_with(finished, jobs, over or here(workers)), kept + 1):
+        for done, record in enumerate(_with(finished, jobs, over), kept + 1):
             file.write(line(header, record))
             file.flush()
             seen(done, kept + len(jobs))

@@ -91,14 +91,14 @@ def board(results: list[Path], *, out: Path | None = None, workers: int = 0, as_
     from hearth.analysis.challenge_board_page import board_page
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
     with bar("runs") as seen:
         found = submissions(results, default, workers, seen)
     rows, compared = [each.row for each in found], list(comparisons(found))
     if out is not None:
         out.parent.mkdir(parents=True, exist_ok=True)
-        write_bytes(out, board_page(rows, compared).encode())
+        write(out, board_page(rows, compared).encode())
     if as_json:
         output.emit([{**row, "compared": [each for each in compared if each["one"] == row["file"]]} for row in rows])
     else:

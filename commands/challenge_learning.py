@@ -98,9 +98,10 @@ def curves(checkpoints: list[Path], *, out: Path, as_json: bool = False) -> None
       hearth challenge curves build/subgoals-0 build/subgoals-1 build/subgoals-2 --out curves.svg
     """
     from hearth.analysis.training_curves import drawn, runs
+    from hearth.storage.chosen_files import write
 
     found = runs(checkpoints)
-    out.write_text(drawn(found), encoding="utf-8")
+    write(out, drawn(found).encode())
     rows = [run.row() for run in found]
     if as_json:
         output.emit(rows)

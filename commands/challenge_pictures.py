@@ -69,6 +69,7 @@ def show(
     from hearth.homes import side_by_side_floor_plans
     from hearth.homes.library import load_layout
     from hearth.kb.loading.load import default
+    from hearth.storage.chosen_files import write
 
     found, known = read_whole(results), default()
     one, record = episode_of(found, str(results), task, episode, alone)
@@ -76,7 +77,7 @@ def show(
     if belief:
         beliefs = location_belief_figure.followed(one, start, ticks)
         if out is not None:
-            out.write_text(location_belief_figure.drawn(beliefs), encoding="utf-8")
+            write(out, location_belief_figure.drawn(beliefs).encode())
         output.emit(beliefs) if as_json else output.records([each.row() for each in beliefs])
         return
     if out is not None:

@@ -66,13 +66,13 @@ def check(
 def _fix(path: Path, knowledge: Knowledge, *, write: bool) -> str:
     """Correct one file if it is program text; the difference as a diff."""
     from hearth.pipelines.checks import fixes
-    from hearth.storage.files import rewrite
+    from hearth.storage import chosen_files
 
     if not path.is_file() or (text := _program_text(path, str(path))) is None:
         return ""
     new = fixes.fixed(text, knowledge)
     if write and new != text:
-        rewrite(path, new.encode())
+        chosen_files.write(path, new.encode())
     return fixes.difference(text, new, str(path))
 
 

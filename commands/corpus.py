@@ -35,11 +35,11 @@ def template(out: Path | None = None, as_json: bool = False) -> None:
     """
     from importlib.resources import files
 
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
     text = (files("hearth.data_raw") / "template.csv").read_text("utf-8")
     if out is not None:
-        write_bytes(out, text.encode())
+        write(out, text.encode())
     if out is None or as_json:
         output.say(text.rstrip("\n"), {"out": out, "template": text}, as_json)
 
@@ -78,7 +78,7 @@ def synthesize(
     from hearth.analysis import description_information, synthesis
     from hearth.analysis import synthesis_splits as numbers
     from hearth.analysis import written_descriptions as written
-    from hearth.storage.files import replacing
+    from hearth.storage.chosen_files import writing
 
     if actions not in ("animated", "all"):
         raise typer.BadParameter("`animated` or `all`", param_hint="--actions")
@@ -102,7 +102,7 @@ def synthesize(
     if out is None:
         sys.stdout.buffer.writelines(lines)
         return
-    with replacing(out) as temporary, temporary.open("wb") as file:
+    with writing(out) as temporary, temporary.open("wb") as file:
         file.writelines(lines)
     output.say(f"{output.counted(count, 'program')} in {out}", {**figures, "seed": seed, "file": out}, as_json)
 
@@ -258,12 +258,12 @@ def sheet(
       hearth corpus sheet data_out --programs 100 --out ratings.csv
     """
     from hearth.analysis import completeness_ratings
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
     drawn = _drawn(sources, count, seed)
     text = completeness_ratings.sheet(drawn, raters)
     if out is not None:
-        write_bytes(out, text.encode())
+        write(out, text.encode())
     message = text.removesuffix("\n") if out is None else f"{out}: ratings are 1, 2 or 3"
     output.say(message, {"programs": [name for name, _ in drawn], "raters": raters, "file": out}, as_json)
 

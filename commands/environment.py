@@ -234,7 +234,9 @@ def preconditions(
 def _svg(path: Path, text: str) -> None:
     if path.suffix != ".svg":
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a drawing is written as .svg", file=str(path))
-    path.write_text(text, encoding="utf-8")
+    from hearth.storage.chosen_files import write
+
+    write(path, text.encode())
 
 
 def _bars(group: str, counts: Any) -> None:

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 
 _IDS = "`home convert HOME FILE.json` writes a home's nodes with their ids"
 
+MOST_NAMED = 12
+"""Things that a refusal lists."""
+
 RELATIONS = {"on": "ON", "in": "INSIDE", "inside": "INSIDE"}
 
 
@@ -53,6 +56,7 @@ def edited(
     wanted = [_state(text) for text in states]
     _check_ids([*remove, *place, *(target for _, target in place.values()), *(node for node, _ in wanted)],
                world.home.index.keys() | {node.id for node in nodes})  # fmt: skip
+    _need_empty(graph, remove, place)
     found = edit(world, add=nodes, remove=remove, place=place, set=wanted)
     if isinstance(found, Failure):
         raise HearthError(
@@ -71,6 +75,26 @@ def _check_ids(named: Sequence[int], known: Collection[int]) -> None:
                for node in dict.fromkeys(named) if node not in known]  # fmt: skip
     if missing:
         raise HearthError(missing)
+
+
+def _need_empty(graph: EnvironmentGraph, removed: Collection[int], moved: Collection[int]) -> None:
+    """Refuse to remove a room or a thing while other things stand in it or on it."""
+    left: dict[int, set[int]] = {node: set() for node in removed}
+    gone = {*removed, *moved}
+    for source, relation, target in graph.edges:
+        if target in left and relation in RELATIONS.values() and source not in gone:
+            left[target].add(source)
+    faults = [_left(node, sorted(things)) for node, things in left.items() if things]
+    if faults:
+        raise HearthError(faults)
+
+
+def _left(node: int, things: Sequence[int]) -> Diagnostic:
+    count = "1 thing" if len(things) == 1 else f"{len(things):,} things"
+    more = f" and {len(things) - MOST_NAMED:,} more" if len(things) > MOST_NAMED else ""
+    remedy = f"move or remove first: {', '.join(map(str, things[:MOST_NAMED]))}{more}"
+    message = f"{count} in or on node {node} would be nowhere without it"
+    return Diagnostic(Code.OCCUPIED, message, found=str(node), suggestion=remedy)
 
 
 def _placing(text: str, form: str) -> tuple[str, str, int]:

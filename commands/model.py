@@ -236,7 +236,7 @@ def examples(
     from hearth.commands.progress_line import bar
     from hearth.datasets.dataset import Dataset
     from hearth.scoring.dataset_scores import score_given
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
     data = Dataset.open(dataset)
     found = score_given(data, predicted)
@@ -246,7 +246,7 @@ def examples(
             shown.append(each)
             seen(len(shown), count)
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(out, examples_page(shown, f"Predictions of {predicted.stem}", len(found)).encode())
+    write(out, examples_page(shown, f"Predictions of {predicted.stem}", len(found)).encode())
     output.say(f"{len(shown)} examples in {out}", {"out": out, "examples": len(shown), "of": len(found)}, as_json)
 
 
@@ -261,7 +261,7 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
     """
     from hearth.datasets.dataset import Dataset
     from hearth.models.films import clip_confusion, film_figure
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
     data = Dataset.open(dataset)
     if number == "4-4":
@@ -271,7 +271,7 @@ def figure(number: str, dataset: Path, *, model: str, out: Path, as_json: bool =
     else:
         raise HearthError.of(Code.BAD_ARGUMENT, f"there is no figure `{number[:20]}`", suggestion="4-4 or 4-7")
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(out, drawn.encode())
+    write(out, drawn.encode())
     output.say(str(out), {"figure": number, "files": [str(out)]}, as_json)
 
 

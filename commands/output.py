@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from math import isnan
 from pathlib import Path
 from typing import Any, TextIO
@@ -40,10 +41,10 @@ def emit(value: Any) -> None:
 
 def write(file: Path, value: Any) -> None:
     """Write the output of `emit` into a file."""
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write as write_chosen
 
     file.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(file, _document(value).encode())
+    write_chosen(file, _document(value).encode())
 
 
 def _document(value: Any) -> str:
@@ -51,7 +52,29 @@ def _document(value: Any) -> str:
     import orjson
 
     options = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE | orjson.OPT_NON_STR_KEYS | orjson.OPT_SERIALIZE_NUMPY
-    return shown_json(orjson.dumps(value, default=_plain, option=options).decode())
+    try:
+        data = orjson.dumps(value, default=_plain, option=options)
+    except orjson.JSONEncodeError as error:
+        if "surrogates" not in str(error):
+            raise
+        data = orjson.dumps(_with_escapes(value), default=_plain, option=options)
+    return shown_json(data.decode())
+
+
+def _with_escapes(value: Any) -> Any:
+    """Return a value whose texts can be UTF-8: bytes of a file's name that are none become `\\udcff`, as in `line`."""
+    if isinstance(value, (str, Path)):
+        return str(value).encode("utf-8", "backslashreplace").decode()
+    if is_dataclass(value) and not isinstance(value, type):
+        value = {each.name: getattr(value, each.name) for each in fields(value) if not each.name.startswith("_")}
+    elif not isinstance(value, (Mapping, list)):
+        try:
+            value = _plain(value)
+        except TypeError:
+            return value
+    if isinstance(value, Mapping):
+        return {_with_escapes(name): _with_escapes(each) for name, each in value.items()}
+    return [_with_escapes(each) for each in value] if isinstance(value, list) else value
 
 
 def line(*values: object, sep: str = " ", end: str = "\n", file: TextIO | None = None, flush: bool = False) -> None:

@@ -208,9 +208,10 @@ def sheet(out: Path, fine: bool = False, as_json: bool = False) -> None:
     from hearth.rendering.film.png import encode
     from hearth.rendering.models.model_sheet import entries
     from hearth.rendering.models.model_sheet import sheet as draw
+    from hearth.storage.chosen_files import write
 
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_bytes(encode(draw(quality="fine" if fine else "draft")))
+    write(out, encode(draw(quality="fine" if fine else "draft")))
     labels = [label for label, _ in entries()]
     output.say(f"Every model ({len(labels)}) is in {out}.", {"file": out, "models": labels}, as_json)
 
@@ -237,6 +238,7 @@ def gallery(
     from hearth.rendering.film.contact_sheet import contact_sheet
     from hearth.rendering.film.png import encode
     from hearth.schemas.syntax import print_step
+    from hearth.storage.chosen_files import write
 
     known = default()
     programs = [script.program for script in scripts(inputs.paths(sources or []), known) if isinstance(script, Script)]
@@ -247,7 +249,7 @@ def gallery(
     captions = [f"{number}. {print_step(step.step)}" for number, step in enumerate(found, 1)]
     frames = [(step.picture, caption) for step, caption in zip(found, captions, strict=True)]
     out.parent.mkdir(parents=True, exist_ok=True)
-    out.write_bytes(encode(contact_sheet(frames, columns=6)))
+    write(out, encode(contact_sheet(frames, columns=6)))
     rows = [
         {"home": one.home, "hour": one.hour, "program": one.title, "step": print_step(one.step), "shown": one.shown}
         for one in found

@@ -46,9 +46,9 @@ def fitted(
 def _write(model: dict[str, Any], path: Path) -> None:
     import orjson
 
-    from hearth.storage.files import write_bytes
+    from hearth.storage.chosen_files import write
 
-    write_bytes(path, orjson.dumps(model) + b"\n")
+    write(path, orjson.dumps(model) + b"\n")
 
 
 def _print(report: dict[str, Any], folds: int) -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage.chosen_files import followed
 
 
 def check_outside(path: Path, folder: Path) -> None:
@@ -12,6 +13,6 @@ def check_outside(path: Path, folder: Path) -> None:
     Raises:
         HearthError: UNWRITABLE.
     """
-    if path.resolve().is_relative_to(folder.resolve()):
+    if followed(path).is_relative_to(folder.resolve()):
         message = "this is a place in the dataset that is read, which stays as it was published"
         raise HearthError.of(Code.UNWRITABLE, message, file=str(path), suggestion="name a place outside of it")

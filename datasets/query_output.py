@@ -20,8 +20,8 @@ from hearth.datasets.places_outside import check_outside
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.batch_sizes import ROWS_OF_AN_ANSWER
+from hearth.storage.chosen_files import writing
 from hearth.storage.csv_files import rows_writer
-from hearth.storage.files import replacing
 from hearth.storage.names import numbered
 
 
@@ -176,5 +176,5 @@ def write_answer(dataset: Dataset, query: str, path: Path, form: str = "") -> in
         remedy = "name a file in a folder that there is"
         raise HearthError.of(Code.UNWRITABLE, "no file can be written there", file=str(path), suggestion=remedy)
     check_outside(path, dataset.folder)
-    with using(dataset.folder), replacing(path) as temporary:
+    with using(dataset.folder), writing(path) as temporary:
         return WRITERS[form](dataset, query, temporary)

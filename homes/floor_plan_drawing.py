@@ -13,6 +13,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Spot
 from hearth.schemas.optional_libraries import library
+from hearth.storage import chosen_files
 
 SCALE = 90
 """Pixels a metre."""
@@ -189,7 +190,7 @@ def write(layout: Layout, path: Path | str, trails: Sequence[Trail] = ()) -> Non
     """
     target = Path(path)
     if target.suffix == ".svg":
-        target.write_text(svg(layout, trails), encoding="utf-8")
+        chosen_files.write(target, svg(layout, trails).encode())
     elif target.suffix == ".png":
         _write_png(layout, target, trails)
     else:
@@ -201,7 +202,8 @@ def _write_png(layout: Layout, path: Path, trails: Sequence[Trail]) -> None:
     area = bounds(layout)
     figure = library("matplotlib.figure").Figure(figsize=(area.width, area.depth), dpi=SCALE)
     paint(figure.add_axes((0, 0, 1, 1)), area, shapes(layout), trails)
-    canvas(figure).print_png(str(path), metadata={"Software": None})
+    with chosen_files.writing(path) as temporary:
+        canvas(figure).print_png(str(temporary), metadata={"Software": None})
 
 
 def paint(axes: Any, area: Rect, parts: Iterable[Shape], trails: Sequence[Trail]) -> None:

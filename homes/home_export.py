@@ -14,6 +14,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph, to_release
+from hearth.storage import chosen_files
 from hearth.storage.csv_files import rows_writer
 
 
@@ -28,7 +29,7 @@ def write(layout: Layout, path: Path, knowledge: Knowledge) -> None:
     if path.suffix == ".json":
         write_release(scene(layout, knowledge), path)
     elif path.suffix == ".yaml":
-        path.write_text(plan_text(replace(layout.plan, name=path.stem)), encoding="utf-8")
+        chosen_files.write(path, plan_text(replace(layout.plan, name=path.stem)).encode())
     else:
         floor_plan_drawing.write(layout, path)
 
@@ -41,7 +42,7 @@ def write_release(graph: EnvironmentGraph, path: Path) -> int:
     """
     if path.suffix != ".json":
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a scene graph is written as .json", file=str(path))
-    path.write_bytes(orjson.dumps(to_release(graph), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
+    chosen_files.write(path, orjson.dumps(to_release(graph), option=orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE))
     return len(graph.nodes)
 
 
@@ -53,5 +54,5 @@ def write_ids(layout: Layout, path: Path) -> int:
     write = rows_writer(text)
     write([("id", "name")])
     write(sorted((number, name) for name, number in (ids | removed).items()))
-    path.write_text(text.getvalue(), encoding="utf-8")
+    chosen_files.write(path, text.getvalue().encode())
     return len(ids)

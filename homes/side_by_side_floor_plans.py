@@ -14,6 +14,7 @@ from hearth.homes.plans.layout import Layout
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
+from hearth.storage import chosen_files
 
 HEAD = 0.9
 """Metres above each drawing, for its title and the legend."""
@@ -78,7 +79,7 @@ def write(layout: Layout, path: Path, panels: Sequence[Panel], named: Collection
         HearthError: UNSUPPORTED_FILE for another ending.
     """
     if path.suffix == ".svg":
-        path.write_text(svg(layout, panels, named), encoding="utf-8")
+        chosen_files.write(path, svg(layout, panels, named).encode())
     elif path.suffix == ".png":
         _write_png(layout, path, panels, named)
     else:
@@ -121,4 +122,5 @@ def _write_png(layout: Layout, path: Path, panels: Sequence[Panel], named: Colle
             line.set_color(trail.colour)
             figure.add_artist(line)
             figure.text(x + 0.04 * wide, 1 - 0.75 / high, name, size=13)
-    canvas(figure).print_png(str(path), metadata={"Software": None})
+    with chosen_files.writing(path) as temporary:
+        canvas(figure).print_png(str(temporary), metadata={"Software": None})

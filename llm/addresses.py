@@ -27,6 +27,9 @@ KEYS_OF_HOSTS = {"api.openai.com": "OPENAI_API_KEY", "openrouter.ai": "OPENROUTE
 HARMLESS = frozenset({"api-version"})
 """The fields of a query that an address may have; others may be keys."""
 
+LONGEST_KEY = 4_096
+"""Characters of a key; servers refuse longer headers."""
+
 HIDDEN = "[key]"
 """Stands where a key was."""
 
@@ -86,15 +89,25 @@ def key_for(url: str, variable: str = "") -> str:
         variable: with the key; else `HEARTH_LLM_KEY`, or the variable that belongs to the host.
 
     Raises:
-        HearthError: BAD_ARGUMENT: the variable is not set. The message does not repeat it, because it may be a key.
+        HearthError: BAD_ARGUMENT: the variable is not set, or its value cannot be a key. The message repeats neither,
+            because both may be keys.
     """
     if variable:
         if variable not in os.environ:
             message = "the variable that `key` names is not set"
             raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"export {KEY}=..., and leave `key` out")
-        return os.environ[variable].strip()
+        return _sendable(os.environ[variable])
     of_host = KEYS_OF_HOSTS.get(urlsplit(url).hostname or "")
-    return (os.environ.get(KEY) or (os.environ.get(of_host, "") if of_host else "")).strip()
+    return _sendable(os.environ.get(KEY) or (os.environ.get(of_host, "") if of_host else ""))
+
+
+def _sendable(text: str) -> str:
+    """Return a key as a header can have it; libraries repeat in their errors what they refuse to send."""
+    key = text.strip()
+    if not key.isascii() or not key.isprintable() or len(key) > LONGEST_KEY:
+        message = f"the key for the server is not one line of up to {LONGEST_KEY:,} printable ASCII characters"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=f"set {KEY} again, to the key alone")
+    return key
 
 
 def without_key(text: str, key: str) -> str:

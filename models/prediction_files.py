@@ -28,7 +28,7 @@ from hearth.schemas.syntax import print_lines
 from hearth.schemas.terminal import shown_line
 from hearth.scoring.dataset_scores import chosen
 from hearth.simulation.rules import RULES
-from hearth.storage.files import write_bytes
+from hearth.storage import chosen_files
 from hearth.storage.parallel import Seen, unseen
 
 
@@ -112,7 +112,7 @@ def write(predicted: Iterator[tuple[str, Steps]], path: Path) -> int:
     """Write a file of predictions, a JSON object a line; their number."""
     lines = [_line({"id": name, "predicted": list(print_lines(Program(steps=steps)))}) for name, steps in predicted]
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_bytes(path, b"".join(lines))
+    chosen_files.write(path, b"".join(lines))
     return len(lines)
 
 

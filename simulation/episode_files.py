@@ -32,7 +32,7 @@ from hearth.simulation.world.home import Home
 from hearth.simulation.world.world import World
 from hearth.simulation.world.world_json import private, with_private
 from hearth.storage.archives import unpacked
-from hearth.storage.files import replacing
+from hearth.storage.chosen_files import writing
 from hearth.storage.input_files import LARGEST, read_input
 
 
@@ -42,7 +42,7 @@ def write(path: Path, episodes: Iterable[Episode]) -> int:
 
     homes: dict[str, EnvironmentGraph] = {}
     count = 0
-    with replacing(path) as temporary, _opened(temporary, path) as file:
+    with writing(path) as temporary, _opened(temporary, path) as file:
         for episode in episodes:
             root = episode.start.home
             while root.base is not None:

@@ -4,6 +4,7 @@ import gzip
 import io
 import stat
 import zipfile
+from collections import Counter
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
@@ -82,7 +83,8 @@ def opened_zip(file: IO[bytes], name: str) -> zipfile.ZipFile:
     """Return the zip in an open file, which stays open: every zip of others is opened here.
 
     Raises:
-        HearthError: FILE_TOO_LARGE: the list of its files is beyond `LARGEST_DIRECTORY`.
+        HearthError: FILE_TOO_LARGE: the list of its files is beyond `LARGEST_DIRECTORY`; BAD_ARCHIVE: several files
+            have one name.
         zipfile.BadZipFile: it is not a zip, or damaged; other errors of `zipfile`.
     """
     try:
@@ -92,7 +94,18 @@ def opened_zip(file: IO[bytes], name: str) -> zipfile.ZipFile:
         place, remedy = name, f"{UNPACK}; at most {LARGEST_DIRECTORY:,} bytes of a list are read"
         raise HearthError.of(Code.FILE_TOO_LARGE, message, file=place, suggestion=remedy) from error
     found.fp = file
+    _need_names_of_their_own(found, name)
     return found
+
+
+def _need_names_of_their_own(found: zipfile.ZipFile, place: str) -> None:
+    """Refuse an archive in which a file could be read instead of another."""
+    if len(found.NameToInfo) == len(found.filelist):
+        return
+    twice, times = Counter(info.filename for info in members(found)).most_common(1)[0] if members(found) else ("", 1)
+    if times > 1:
+        message = f"{times} files in it have the name `{twice[:100]}`: by it only one of them can be read"
+        raise HearthError.of(Code.BAD_ARCHIVE, message, file=place, suggestion="pack it anew")
 
 
 UNPACK = "unpack it, and name the folder as a source"

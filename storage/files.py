@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import stat
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache
@@ -28,13 +29,31 @@ def is_temporary(name: str) -> bool:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Yield a temporary name next to `path`; on success it is fsynced and takes the place of `path`."""
+    """Yield a temporary name next to `path`; on success it is fsynced and takes the place of `path`.
+
+    Files that a user names are written by `storage.chosen_files`.
+
+    Raises:
+        HearthError: UNWRITABLE: a pipe, a device or a socket has this name.
+    """
+    need_replaceable(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}{TEMPORARY}")
     try:
         yield temporary
         commit(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def need_replaceable(path: Path) -> None:
+    """Refuse a name that a pipe, a device or a socket has; errors as of `replacing`."""
+    try:
+        mode = path.lstat().st_mode
+    except (OSError, ValueError):
+        return
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode) or stat.S_ISLNK(mode)):
+        message = "a pipe, a device or a socket has the name of this file"
+        raise HearthError.of(Code.UNWRITABLE, message, file=str(path), suggestion="move it away")
 
 
 def commit(temporary: Path, path: Path) -> None:
@@ -64,14 +83,6 @@ def write_bytes(path: Path, data: bytes) -> None:
     """Write a whole file, or none."""
     with replacing(path) as temporary:
         temporary.write_bytes(data)
-
-
-def rewrite(path: Path, data: bytes) -> None:
-    """Write a file of the user's again, whole or not at all: a link stays one, and the file keeps who may read it."""
-    path = path.resolve()
-    with replacing(path) as temporary:
-        temporary.write_bytes(data)
-        temporary.chmod(path.stat().st_mode & 0o7777)
 
 
 def write_json(path: Path, value: Any) -> None:

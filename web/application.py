@@ -1,7 +1,5 @@
 """The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
-import asyncio
-import errno
 import hmac
 import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -11,12 +9,12 @@ from typing import Any
 from urllib.parse import parse_qsl
 
 import jinja2
-from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
+from sqlalchemy.exc import DBAPIError, IntegrityError
 from starlette.applications import Starlette
 from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
 from starlette.middleware.gzip import GZipMiddleware
-from starlette.requests import ClientDisconnect, HTTPConnection, Request
+from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
@@ -27,10 +25,12 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines, desk_access, sessions, start_pages
+from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
-from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
+from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
 from hearth.web.phrases import refused, say
+from hearth.web.request_body import body_of
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
@@ -47,9 +47,6 @@ LOG = logging.getLogger("uvicorn.error")
 
 TRY_LATER = 1013
 """The code with which a socket is closed that a busy server can't serve."""
-
-NO_MORE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Numbers of the errors of a full disk."""
 
 
 def application(
@@ -153,7 +150,7 @@ def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
         session = await in_thread(sessions.find, web.store, token_of(request))
         sender = session.id if session else sender_of(request)
         web.rates["request"].check(sender, request.url.path)
-        body = await _body(request, address.most)
+        body = await body_of(request, address.most)
         return await in_thread(_answer, web, address, request, session, body, within=within)
 
     return endpoint
@@ -208,29 +205,13 @@ def _is_researcher(web: Web, request: Request) -> bool:
     return hmac.compare_digest(sessions.digest(token), web.desk)
 
 
-async def _body(request: Request, most: int) -> bytes:
-    parts, size = [], 0
-    try:
-        async with asyncio.timeout(QUIET_SECONDS):
-            async for part in request.stream():
-                size += len(part)
-                if size > most:
-                    raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
-                parts.append(part)
-    except ClientDisconnect:
-        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
-    except TimeoutError:
-        raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
-    return b"".join(parts)
-
-
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
     deadlines.begin(deadlines.OPENS)
     try:
         session = await in_thread(sessions.find, web.store, token_of(socket))
     except HearthError as error:
         await socket.accept()
-        await socket.send_json({"type": "error", **_fault_of(error).as_json()})
+        await socket.send_json({"type": "error", **fault_of(error).as_json()})
         await socket.close(TRY_LATER)
         return
     await socket.accept()
@@ -246,27 +227,9 @@ async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
     await address.handler(Link(web, session, socket))
 
 
-def _fault_of(error: Exception) -> WebError:
-    if isinstance(error, WebError):
-        return error
-    if isinstance(error, HTTPException):
-        code = Code.UNKNOWN_ID if error.status_code == 404 else Code.BAD_ARGUMENT
-        return WebError(code, "address", "an address of this server, and a method it has", error.detail)
-    if isinstance(error, HearthError):
-        fault = error.diagnostics[0]
-        return WebError(fault.code, fault.place(), fault.suggestion, fault.message)
-    if isinstance(error, OSError) and error.errno in NO_MORE:
-        return WebError(Code.UNWRITABLE, "server", "room on its disk", "a full disk")
-    if isinstance(error, OSError) and error.errno in (errno.EMFILE, errno.ENFILE):
-        return WebError(Code.TIMED_OUT, "server", "fewer requests at once", "as many open files as it may have")
-    if isinstance(error, OperationalError):
-        return WebError(Code.MISSING_FILE, "store", "a store that can be used", "one that can't be, see the log")
-    return WebError(Code.INTERNAL_ERROR, "server", "an answer", "an error in Hearth, not in your request")
-
-
 async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     """Return the answer to a request that is refused: a page for browsers, else JSON."""
-    fault = _fault_of(error)
+    fault = fault_of(error)
     if isinstance(error, OSError) and fault.code is Code.INTERNAL_ERROR:
         raise error  # it is ours, and the log is to say where
     if isinstance(error, DBAPIError):  # its text can have what somebody wrote

@@ -10,6 +10,7 @@ from hearth.kb.tools.pddl import domain
 from hearth.kb.tools.step_grammar import as_gbnf, as_lark, as_regex, as_schema
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.storage import chosen_files
 from hearth.storage.duckdb_connections import open_database
 
 
@@ -26,7 +27,7 @@ def export(knowledge: Knowledge, form: str, to: Path | None = None) -> str:
     text = FORMS[form](knowledge)
     if to is None:
         return text
-    to.write_text(text, encoding="utf-8")
+    chosen_files.write(to, text.encode())
     return ""
 
 
@@ -39,8 +40,7 @@ def _graphml(knowledge: Knowledge) -> str:
 def _database(knowledge: Knowledge, to: Path | None) -> str:
     if to is None:
         raise HearthError.of(Code.UNSUPPORTED_FILE, "a database needs a file", suggestion="give --to FILE")
-    to.unlink(missing_ok=True)
-    with open_database(to) as connection:
+    with chosen_files.writing(to) as temporary, open_database(temporary) as connection:
         fill(connection, knowledge)
     return ""
 

@@ -19,7 +19,7 @@ from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
-from hearth.storage.files import replacing
+from hearth.storage.chosen_files import write as write_chosen
 
 ENDINGS = {"gltf": ".glb", "obj": ".obj"}
 """The file of each form. A `.glb` contains its textures; an `.obj` has colors alone, in a separate `.mtl`."""
@@ -51,8 +51,7 @@ def write(scene: Scene, path: Path, form: str = "gltf") -> int:
     library("trimesh")
     found = _Exchanged(scene, textures=form == "gltf").made
     for name, data in (_gltf(found, path) if form == "gltf" else _obj(found, path)).items():
-        with replacing(path.with_name(name)) as temporary:
-            temporary.write_bytes(data)
+        write_chosen(path if name == path.name else path.with_name(name), data)
     return len({thing.id for thing in scene.everything})
 
 

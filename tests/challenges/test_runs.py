@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -53,6 +54,30 @@ def test_all_episodes_are_there_and_can_be_done_again(results):
 def test_the_same_bytes_for_any_number_of_workers(results, tmp_path):
     run(FEW, HP, 2, tmp_path / "two.jsonl", default, workers=2)
     assert (tmp_path / "two.jsonl").read_bytes() == results[0].read_bytes()
+
+
+def test_two_runs_into_one_file_at_once_do_not_destroy_it(results, tmp_path):
+    out, second = tmp_path / "one.jsonl", []
+
+    def meanwhile(done, total):
+        with pytest.raises(HearthError) as caught:
+            run(FEW, HP, 2, out, default)
+        second.append(caught.value.diagnostics[0])
+
+    run(FEW, HP, 2, out, default, seen=meanwhile)
+    assert out.read_bytes() == results[0].read_bytes()
+    assert {each.code for each in second} == {Code.LOCKED} and "another file" in second[0].suggestion
+    assert [each.name for each in tmp_path.iterdir()] == ["one.jsonl"]
+
+
+def test_a_run_goes_through_a_link_and_into_no_pipe(results, tmp_path):
+    (tmp_path / "link.jsonl").symlink_to("real.jsonl")
+    run(FEW, HP, 2, tmp_path / "link.jsonl", default)
+    assert (tmp_path / "real.jsonl").read_bytes() == results[0].read_bytes() and (tmp_path / "link.jsonl").is_symlink()
+    os.mkfifo(tmp_path / "pipe.jsonl")
+    with pytest.raises(HearthError, match="UNWRITABLE"):
+        run(FEW, HP, 2, tmp_path / "pipe.jsonl", default)
+    assert (tmp_path / "pipe.jsonl").is_fifo()
 
 
 @pytest.mark.tools

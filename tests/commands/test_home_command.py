@@ -127,6 +127,30 @@ def test_orders_that_make_no_sense_are_refused(tmp_path, order, code):
     assert not (tmp_path / "x.json").exists()
 
 
+def test_nothing_is_removed_from_under_what_stays(tmp_path):
+    graph = json.loads(_copied(tmp_path).read_text())
+    kitchen = next(node["id"] for node in graph["nodes"] if node["class_name"] == "kitchen")
+    inside = {e["from_id"] for e in graph["edges"] if e["to_id"] == kitchen and e["relation_type"] == "INSIDE"}
+    out = tmp_path / "x.json"
+    result = run("edit", "maple", "--remove", kitchen, "--out", out, "--json")
+    (fault,) = json.loads(result.stdout)["errors"]
+    assert result.exit_code == 1 and fault["code"] == "OCCUPIED" and f"{len(inside)} things" in fault["message"]
+    assert not out.exists()
+    every = [word for each in (kitchen, *sorted(inside)) for word in ("--remove", str(each))]
+    assert run("edit", "maple", *every, "--out", out).exit_code == 0
+    left = json.loads(out.read_text())
+    assert len(left["nodes"]) == len(graph["nodes"]) - len(inside) - 1
+
+
+def test_a_thing_that_holds_others_is_not_removed_alone(tmp_path):
+    graph = json.loads(_copied(tmp_path).read_text())
+    fridge = next(node["id"] for node in graph["nodes"] if node["class_name"] == "fridge")
+    orders = ("--add", f"apple:in:{fridge}")
+    assert run("edit", "maple", *orders, "--out", tmp_path / "fed.json").exit_code == 0
+    result = run("edit", tmp_path / "fed.json", "--remove", fridge, "--out", tmp_path / "x.json", "--json")
+    assert result.exit_code == 1 and "OCCUPIED" in result.stdout
+
+
 def test_a_graph_is_laid_out(tmp_path):
     assert run("generate", "--rooms", 3, "--seed", 5, "--out", tmp_path / "small.json").exit_code == 0
     graph = json.loads((tmp_path / "small.json").read_text())

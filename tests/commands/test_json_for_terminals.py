@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import re
+import sys
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -14,6 +17,8 @@ from hearth import cli
 from hearth.commands import output
 from hearth.commands.play import _transcript
 from hearth.pipelines.engine.progress import JsonLines
+from hearth.schemas.diagnostics import Diagnostic
+from hearth.schemas.failures import Code
 from hearth.schemas.terminal import BIDIRECTIONAL, shown_json, shown_line
 from hearth.storage.files import read_json, write_json
 
@@ -78,3 +83,24 @@ def test_every_answer_is_harmless(made, tmp_path, words):
     assert "error in Hearth" not in said, said
     if "--json" in words and "--out" not in words and result.exit_code == 0:
         harmless(result.stdout)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+@pytest.mark.parametrize("there", [True, False])
+@pytest.mark.parametrize("words", ["check FILE", "run FILE", "hazards FILE", "home show FILE", "query FILE x"])
+def test_a_name_that_is_no_text_is_in_a_document(tmp_path, words, there):
+    """Bytes that are not UTF-8 in a file's name were an error of ours, and a traceback."""
+    file = tmp_path / os.fsdecode(b"a\xff.txt")
+    if there:
+        file.write_text("Watch TV\nWatch it.\n\n\n[Walk] <couch> (1)\n[Sit] <couch> (1)\n")
+    result = CliRunner().invoke(cli.app, [str(file) if word == "FILE" else word for word in words.split()] + ["--json"])
+    assert "An error in Hearth" not in result.output and isinstance(result.exception, (SystemExit, type(None)))
+    assert json.loads(result.stdout) is not None and (not there or "\\udcff" in result.stdout or result.exit_code == 0)
+
+
+def test_texts_deep_in_a_document_are_escaped_where_they_are_no_text():
+    half = "\udcff"
+    fault = Diagnostic(Code.EMPTY, "empty", file=half)
+    found = json.loads(output._document({half: [(half, 1.5, None)], "path": Path(half), "fault": (fault,)}))
+    assert found["\\udcff"] == [["\\udcff", 1.5, None]] and found["path"] == "\\udcff"
+    assert found["fault"][0]["file"] == "\\udcff" and found["fault"][0]["code"] == "EMPTY"

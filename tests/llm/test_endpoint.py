@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 import subprocess
 import sys
@@ -324,6 +325,22 @@ def test_a_key_goes_to_the_server_and_nowhere_else(asked, tmp_path, monkeypatch,
     seen = [str(error.value), repr(model), *capfd.readouterr(), caplog.text]
     assert "[key]" in seen[0] and not any(SECRET in each for each in seen)
     assert all(SECRET.encode() not in path.read_bytes() for path in tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("key", ["sk-A\nsk-B", "sk-A\r\nX-Other: sk-B", "sk-A\0sk-B", "sk-Ä", "sk-\u200b", "k" * 5000])
+def test_a_key_that_no_header_can_have_is_refused_before_anything_is_sent(asked, tmp_path, monkeypatch, key):
+    monkeypatch.setattr(os, "environ", {**os.environ, "HEARTH_LLM_KEY": key, "OTHER": key})
+    with serving("hello") as (url, server):
+        for more in ({}, {"key": "OTHER"}):
+            with pytest.raises(HearthError, match="BAD_ARGUMENT") as error:
+                asked(url, cache=tmp_path / "c.sqlite", **more)("hello")
+            assert key not in repr(error.value.diagnostics) and "sk-A" not in repr(error.value.diagnostics)
+    assert server.asked == [] and not (tmp_path / "c.sqlite").exists()
+
+
+def test_a_key_with_blanks_around_it_is_the_key(monkeypatch):
+    monkeypatch.setenv("HEARTH_LLM_KEY", " sk-A\n")
+    assert key_for(LOCAL) == "sk-A"
 
 
 def test_keys_of_a_host_go_to_that_host_alone(monkeypatch):

@@ -99,3 +99,23 @@ def test_a_hundred_thousand_files_are_refused_in_seconds(tmp_path):
     began = time.process_time()
     assert refusal(path).code == Code.FILE_TOO_LARGE
     assert time.process_time() - began < 10
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize("name", ["a.txt", "withoutconds/a/1.txt"])
+def test_two_files_of_one_name_are_refused(tmp_path, name):
+    """The second was read twice, and the first lost."""
+    with zipfile.ZipFile(tmp_path / "twice.zip", "w") as file:
+        for title in ("Watch TV", "Read book"):
+            file.writestr(name, f"{title}\n\n\n\n[Walk] <couch> (1)\n")
+    fault = refusal(tmp_path / "twice.zip")
+    assert fault.code is Code.BAD_ARCHIVE and f"2 files in it have the name `{name}`" in fault.message
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_a_folder_may_be_listed_twice(tmp_path):
+    with zipfile.ZipFile(tmp_path / "folders.zip", "w") as file:
+        file.writestr("a/", "")
+        file.writestr("a/b.txt", "Watch TV\n\n\n\n[Walk] <couch> (1)\n")
+        file.writestr("a/", "")
+    assert len(scanned(tmp_path / "folders.zip")) == 1

@@ -6,6 +6,7 @@ from functools import lru_cache, reduce
 from operator import or_
 from typing import Any
 
+from hearth.challenges.instruction_object_names import label
 from hearth.challenges.instruction_writer import acted, instruction
 from hearth.envs.json_observations import last_json, seen_failure
 from hearth.envs.seen_bans import BANS
@@ -15,7 +16,6 @@ from hearth.schemas.failure_words import sentence
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
-from hearth.schemas.spoken_words import spoken
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
 from hearth.simulation.actions.legal import Legal
 from hearth.simulation.goals import Progress
@@ -180,8 +180,8 @@ def called(home: Home) -> tuple[str, ...]:
 def _called(home: Home, i: int) -> str:
     if home.characters >> i & 1:
         return say("play", "person")
-    name = spoken(home.classes[i])
-    between = [spoken(home.classes[room]) for room in indices(home.between[i] & home.rooms)]
+    name = label(home.classes[i])
+    between = [label(home.classes[room]) for room in indices(home.between[i] & home.rooms)]
     return say("play", "door", door=name, one=between[0], other=between[1]) if len(between) == 2 else name
 
 
@@ -306,7 +306,7 @@ def goal_words(literal: Any, home: Home) -> str:
     """Return a literal of a goal for people: `Put plate on dining table`."""
     agent = bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
     said = (HOLDS, "ON") if agent else ("ON", "INSIDE")
-    if literal.negated or len(literal.terms) != 2 or literal.name not in said:
+    if literal.negated or len(literal.terms) != 2 or literal.name not in said or literal.target == AGENT:
         return instruction(Goal.of(literal), home.knowledge, terse=True)
     names = [_name(term, home) for term in literal.terms]
     if agent:
@@ -320,4 +320,4 @@ def _name(term: Any, home: Home) -> str:
     else:
         found = home.instances(term) if term.partition(":")[0] != AGENT else 0
         name = home.classes[lowest(found)] if found else term
-    return spoken(name)
+    return label(name)

@@ -11,7 +11,7 @@ from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
-from hearth.challenges.household_definition import settings
+from hearth.challenges.household_definition import home_words, settings
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
@@ -83,7 +83,7 @@ def _line(each: Stored) -> dict[str, Any]:
     state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
     return {
         "id": each.id,
-        "title": f"{each.trial.title}, in {each.trial.task.home}",
+        "title": f"{each.trial.title}, in {home_words(each.trial.task.home)}",
         "helper": each.trial.helper,
         "state": state,
     }
@@ -140,7 +140,6 @@ def game_page(visit: Visit) -> Response:
         interface=game.trial.interface,
         title=game.trial.title,
         instruction=game.trial.instruction if number == 0 else "",
-        home=game.trial.task.home,
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,
         studied=live.stored.blind,
