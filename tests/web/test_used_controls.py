@@ -24,7 +24,7 @@ def test_every_kind_of_fault_is_found(browser, width):
             press(page, name)
         page.select_option("#choice", "two")
         page.wait_for_timeout(4_500)
-    assert record.unused() == ["/play/ a /game/*"], "what is hidden or disabled is no control now"
+    assert record.unused() == ["/play/ a /game/*"], "a hidden or disabled button is not counted"
     assert record.dead == {("/play/", "button dead")}
     assert {word for _, word in record.read} == {"BAD_ARGUMENT", "kids_bedroom"}
 
