@@ -70,5 +70,6 @@
     const before = changes;
     setTimeout(() => { if (changes === before) window.hearthDead(page, name); }, PATIENCE);
   }
+  addEventListener("submit", () => { changes += 1; }, { capture: true }); // its answer may take a while
   for (const kind of ["click", "input", "change", "keydown"]) addEventListener(kind, used, { capture: true });
 })();

@@ -193,11 +193,18 @@ def _rect(node: Node) -> list[float] | None:
 
 
 def floor_plan(home: Home) -> list[list[Any]]:
-    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id."""
+    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id.
+
+    What surrounds a door is a `frame`: nothing can be done with it.
+    """
     kinds = {ROOM_CATEGORY: "room", "Walls": "wall", "Doors": "door", "Windows": "window"}
     nodes = [home.node(i) for i in range(len(home.ids)) if not home.absent >> i & 1]
     order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
-    return [[kinds[node.category], node.class_name, _rect(node), node.id] for node in order]
+    frames = {node.id for node in order if node.category == "Doors" and "CAN_OPEN" not in node.properties}
+    return [
+        ["frame" if node.id in frames else kinds[node.category], node.class_name, _rect(node), node.id]
+        for node in order
+    ]
 
 
 PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
