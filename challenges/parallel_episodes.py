@@ -15,6 +15,7 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import is_own
 from hearth.challenges.episodes import Job, Record, played, start_of
 from hearth.challenges.metrics import outcome
+from hearth.llm.timed_connections import stopped
 from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.pipelines.engine.engines import engine as made
 from hearth.schemas.diagnostics import HearthError
@@ -74,8 +75,10 @@ def _in_threads(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
                 if rest:
                     waiting.append(pool.submit(played, rest.popleft()))
                 yield record
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        except BaseException:
+            with stopped():
+                pool.shutdown(wait=True, cancel_futures=True)
+            raise
 
 
 @contextmanager
