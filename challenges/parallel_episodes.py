@@ -15,7 +15,7 @@ from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import is_own
 from hearth.challenges.episodes import Job, Record, played, start_of
 from hearth.challenges.metrics import outcome
-from hearth.llm.timed_connections import stopped
+from hearth.llm.timed_connections import asking
 from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.pipelines.engine.engines import engine as made
 from hearth.schemas.diagnostics import HearthError
@@ -67,18 +67,13 @@ def _over_processes(jobs: Sequence[Job], workers: int, apart: bool) -> Iterator[
 def _in_threads(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
     """Play episodes of language models in threads, which mostly wait: they share a cache, a budget and connections."""
     rest = deque(jobs)
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(workers) as pool, asking(pool):
         waiting = deque(pool.submit(played, rest.popleft()) for _ in range(min(2 * workers, len(rest))))
-        try:
-            while waiting:
-                record = waiting.popleft().result()
-                if rest:
-                    waiting.append(pool.submit(played, rest.popleft()))
-                yield record
-        except BaseException:
-            with stopped():
-                pool.shutdown(wait=True, cancel_futures=True)
-            raise
+        while waiting:
+            record = waiting.popleft().result()
+            if rest:
+                waiting.append(pool.submit(played, rest.popleft()))
+            yield record
 
 
 @contextmanager

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import Executor
 from contextlib import contextmanager
 from typing import Any
 
@@ -22,6 +23,17 @@ _now = threading.local()
 def pause(seconds: float) -> None:
     """Wait, but no longer than until the command is asked to stop."""
     stopping.wait(seconds)
+
+
+@contextmanager
+def asking(pool: Executor) -> Iterator[None]:
+    """Let the requests of a pool's threads end at once where the command is asked to stop, or fails."""
+    try:
+        yield
+    except BaseException:
+        with stopped():
+            pool.shutdown(wait=True, cancel_futures=True)
+        raise
 
 
 @contextmanager
