@@ -11,6 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 OUT    ?= data_out
 SEED   ?= 0
+SET    ?= 3
 JOBS   ?= $(shell nproc 2>/dev/null || echo 2)
 PYTHON ?= python3
 
@@ -37,7 +38,7 @@ SHARED   := version.py data_raw/forms.csv $(call tree,schemas storage homes simu
 KNOWN    := $(SHARED) $(call tree,kb)
 WORLD    := $(KNOWN) $(call tree,data_raw/homes)
 
-.PHONY: all models film-models film-tables tables full mini frames demos challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
+.PHONY: all learned models film-models film-tables tables full mini frames demos challenges setup test test-tools test-all coverage lint docs bench lock sbom licences web wheel clean distclean help $(STAGES)
 .PHONY: elsewhere
 
 all: $(call manifest,publish)  ## set up, run all six stages over data_raw, print the funnel (the default)
@@ -47,7 +48,7 @@ CORPUS := $(foreach part,crowd written,data_raw/$(part)/descriptions.csv data_ra
 
 # Each program in two homes drawn for it, so that all seven homes are used.
 FULL = $(HEARTH) build $(CORPUS) $(OUT)/full/synthetic.jsonl \
-  --seed $(SEED) --workers $(JOBS) --tier full
+  --seed $(SEED) --workers $(JOBS) --action-set $(SET) --tier full
 
 full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as usual and as in the thesis, in data_out/full and full-thesis
 	@mkdir -p $(OUT)/full
@@ -58,7 +59,7 @@ full: $(READY)  ## our corpus and 5,193 synthetic programs, 30,000 augmented as 
 clips: $(READY)  ## some 26,000 two-second clips of drawn programs in our homes, in data_out/clips
 	@mkdir -p $(OUT)
 	@$(HEARTH) corpus synthesize 700 --seed $(SEED) --out $(OUT)/clips.jsonl
-	@$(HEARTH) build $(OUT)/clips.jsonl --out $(OUT)/clips --seed $(SEED) --workers $(JOBS) --tier clips
+	@$(HEARTH) build $(OUT)/clips.jsonl --out $(OUT)/clips --seed $(SEED) --workers $(JOBS) --action-set 2 --tier clips
 
 demos: $(READY)  ## 2,000 programs of our corpus pictured from above with class masks, in data_out/demos
 
@@ -68,7 +69,7 @@ challenges: $(READY)  ## all tasks and demonstrations of Watch-And-Help, in data
 mini: $(READY)  ## a small dataset of our corpus, in data_out/mini
 frames: $(READY)  ## a dataset of our corpus with many pictures and some films, in data_out/frames
 mini frames demos:
-	@$(HEARTH) build --out $(OUT)/$@ --seed $(SEED) --workers $(JOBS) --tier $@
+	@$(HEARTH) build --out $(OUT)/$@ --seed $(SEED) --workers $(JOBS) --action-set $(SET) --tier $@
 
 setup: $(READY)  ## make .venv with the locked versions (with uv if installed, else pip)
 
@@ -84,7 +85,7 @@ $(call manifest,ingest): $(KNOWN) $(call tree,data_raw/crowd data_raw/written pi
 	$(RUN) >/dev/null
 
 $(call manifest,validate): $(call manifest,ingest) $(KNOWN) pipelines/validate.py | $(READY)
-	$(RUN) >/dev/null
+	$(RUN) --action-set $(SET) >/dev/null
 
 $(call manifest,sample): $(call manifest,validate) $(WORLD) pipelines/sample.py | $(READY)
 	$(RUN) --seed $(SEED) >/dev/null
@@ -97,7 +98,7 @@ $(call manifest,render): $(call manifest,augment) $(WORLD) $(call tree,rendering
 
 $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py | $(READY)
 	$(RUN) --seed $(SEED) >/dev/null
-	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) 2>/dev/null
+	@$(HEARTH) build --out $(OUT) --seed $(SEED) --workers $(JOBS) --action-set $(SET) 2>/dev/null
 
 # The build of torch without CUDA is a tenth of the other; pip finds it where it is set up with an index that has it.
 TORCH := 2.13.0
@@ -108,6 +109,13 @@ TORCH := 2.13.0
 	   || $(PY) -m pip install -qq --no-compile 'torch>=2.9' 'safetensors>=0.5'; } \
 	  && touch $@ || echo "torch can't be installed: the tests of models are skipped" >&2
 
+# The models that come with Hearth, and the figures of the pages about them, are of action set 2.
+LEARNED := $(OUT)/set-2
+
+learned: $(READY)  ## the dataset of action set 2 that the models that come with Hearth learn from, in data_out/set-2
+	@mkdir -p $(LEARNED)
+	@$(HEARTH) build --out $(LEARNED) --seed $(SEED) --workers $(JOBS) --action-set 2 >/dev/null
+
 # The longest first: two are trained at a time, each by one thread.
 TRAINED := chooser mle-composed retrieve-edit
 models/trained/chooser: HOW := --epochs 10
@@ -116,26 +124,26 @@ models/trained/mle-composed: HOW := --epochs 15 --rate 0.003
 FILMED := clips-context masks
 models/trained/clips-context: HOW := --epochs 22 --rate 0.002
 models/trained/masks: HOW := --epochs 11 --rate 0.002
-$(TRAINED:%=models/trained/%): FROM := $(OUT)
+$(TRAINED:%=models/trained/%): FROM := $(LEARNED)
 $(FILMED:%=models/trained/%): FROM := $(OUT)/clips
 
 .PHONY: $(TRAINED:%=models/trained/%) $(FILMED:%=models/trained/%)
 $(TRAINED:%=models/trained/%) $(FILMED:%=models/trained/%):
 	@$(HEARTH) model train $(notdir $@) $(FROM) --seed $(SEED) --out $@ $(HOW)
 
-models: .venv/.models $(call manifest,publish)  ## train the models that come with Hearth, in models/trained
+models: .venv/.models learned  ## train the models that come with Hearth, in models/trained
 	@$(MAKE) --no-print-directory -j 2 $(TRAINED:%=models/trained/%)
 
 film-models: .venv/.models  ## train the models of films on data_out/clips, which `make clips` makes, in models/trained
 	@$(MAKE) --no-print-directory -j 2 $(FILMED:%=models/trained/%)
 
-film-tables: .venv/.models  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
-	@$(HEARTH) model tables $(OUT) --clips $(OUT)/clips --out $(OUT)/tables --minutes 20 --table 4.2 --table 4.3 --table 4.3b --table 4.6
+film-tables: .venv/.models learned  ## tables 4.2, 4.3 and 4.6 with three seeds, of data_out/clips, in data_out/tables: a night
+	@$(HEARTH) model tables $(LEARNED) --clips $(OUT)/clips --out $(OUT)/tables --minutes 20 --table 4.2 --table 4.3 --table 4.3b --table 4.6
 
-tables: .venv/.models $(call manifest,publish)  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
+tables: .venv/.models learned  ## tables 4.4, 4.5 and 5.2 to 5.4 with three seeds, in data_out/tables: a night
 	@$(HEARTH) corpus synthesize 20000 --seed $(SEED) --out $(OUT)/synthetic.jsonl
-	@$(HEARTH) build $(OUT)/synthetic.jsonl --out $(OUT)/synthetic --seed $(SEED) --workers $(JOBS) --variants 0 --pictures 0 --videos 0 --homes-each 1 >/dev/null
-	@$(HEARTH) model tables $(OUT) $(OUT)/synthetic --out $(OUT)/tables $(foreach number,4.4 4.5 5.2 5.3 5.4,--table $(number))
+	@$(HEARTH) build $(OUT)/synthetic.jsonl --out $(OUT)/synthetic --seed $(SEED) --workers $(JOBS) --action-set 2 --variants 0 --pictures 0 --videos 0 --homes-each 1 >/dev/null
+	@$(HEARTH) model tables $(LEARNED) $(OUT)/synthetic --out $(OUT)/tables $(foreach number,4.4 4.5 5.2 5.3 5.4,--table $(number))
 
 test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "not slow and not tools"
@@ -147,6 +155,26 @@ test: .venv/.models  ## the tests, without the slow ones
 test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, browsers, clusters, S3
 	@! command -v npm >/dev/null || $(MAKE) --no-print-directory web >/dev/null
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
+
+# Each package of adapters/ has an environment of its own: the libraries of two hubs do not go together. Hearth itself and
+# the package are installed from this checkout; torch is in no lock.
+HUBS := verifiers openenv trl inspect
+HUB = .venv/adapters/$*
+
+.venv/adapters/%/.ready: adapters/hearth-%/requirements.lock adapters/hearth-%/pyproject.toml | $(READY)
+	@rm -rf $(HUB) && $(PY) -m venv $(HUB)
+	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps --require-hashes -r $<
+	@[ $* != trl ] || $(HUB)/bin/python -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 2>/dev/null \
+	  || $(HUB)/bin/python -m pip install -qq --no-compile 'torch>=2.9'
+	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps -e . -e adapters/hearth-$*
+	@[ $* != openenv ] || (cd adapters/hearth-openenv && ../../$(HUB)/bin/uv lock -q)
+	@touch $@
+
+$(HUBS:%=test-%): test-%: .venv/adapters/%/.ready
+	@cd adapters/hearth-$* && ../../$(HUB)/bin/python -m pytest -q -p no:cacheprovider tests
+
+.PHONY: $(HUBS:%=test-%) test-adapters
+test-adapters: $(HUBS:%=test-%)  ## the tests of adapters/, each with its hub in an environment of its own
 
 test-all: .venv/.tools .venv/.models  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
@@ -186,6 +214,17 @@ lock: ## pin the newest versions allowed by pyproject.toml, with hashes, in requ
 	  $(call without,build/lock/base.txt,.) -o build/lock/tools.txt
 	@for name in base:requirements.lock tools:requirements-tools.lock; do \
 	   { sed '/^#/!d' $${name#*:}; cat build/lock/$${name%:*}.txt; } > build/lock/whole && mv build/lock/whole $${name#*:}; done
+	@$(MAKE) --no-print-directory lock-adapters
+
+# Written from what pyproject.toml of each allows.
+OF_HUB = build/lock/bin/uv pip compile -q adapters/hearth-$(1)/pyproject.toml --extra test --universal \
+  --python-version 3.11 --generate-hashes --no-annotate --no-header --no-emit-package hearth-home-programs
+.PHONY: lock-adapters
+lock-adapters:  ## pin the newest versions of the hubs in the locks of adapters/
+	@[ -x build/lock/bin/uv ] || { $(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install -q uv; }
+	@$(foreach hub,$(HUBS),$(call OF_HUB,$(hub)) -o build/lock/$(hub).txt && \
+	   $(call OF_HUB,$(hub)) -c build/lock/$(hub).txt $(call without,build/lock/$(hub).txt,$(TORCHES)) \
+	   -o adapters/hearth-$(hub)/requirements.lock && ) true
 
 web: $(READY)  ## fetch Blockly and three.js with npm, for the pages of `serve`
 	@npm ci --prefix web --loglevel error && $(PY) -m hearth.web.third_party_scripts && du -sh web/fetched
@@ -204,14 +243,14 @@ licences:  ## docs/licences.md: the licence of every library of both locks
 	@build/licences/bin/python docs/hooks/licences.py build/licences/bin/pip-licenses && rm -rf build/licences
 
 clean:  ## remove the output; .venv stays
-	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/demos $(OUT)/challenges $(OUT)/synthetic* $(OUT)/tables $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	@rm -rf $(STAGES:%=$(OUT)/%) $(OUT)/.publish $(OUT)/full $(OUT)/full-thesis $(OUT)/mini $(OUT)/frames $(OUT)/demos $(OUT)/challenges $(LEARNED) $(OUT)/synthetic* $(OUT)/tables $(OUT)/.lock build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	@find . -path ./.venv -prune -o -name __pycache__ -type d -print0 | xargs -0 rm -rf
 
 distclean: clean  ## also remove .venv
 	@rm -rf .venv
 
 help:  ## this list
-	@echo "make [TARGET] [OUT=data_out] [SEED=0] [JOBS=$(JOBS)] [PYTHON=python3]"
+	@echo "make [TARGET] [OUT=data_out] [SEED=0] [SET=3] [JOBS=$(JOBS)] [PYTHON=python3]"
 	@sed -n 's/^\([a-z][a-z-]*\):[^#]*## \(.*\)/  \1\t\2/p' Makefile | expand -t 14
 	@echo "  $(firstword $(STAGES)) ... $(lastword $(STAGES))" | expand -t 14
 	@echo "            one stage and those before it: $(STAGES)"

@@ -3,6 +3,7 @@ from duckdb import DuckDBPyConnection
 from hearth.challenges.array_homes import ArrayHomes as ArrayHomes
 from hearth.challenges.language_runs import run_tasks as run_tasks
 from hearth.challenges.task_files import suite as suite
+from hearth.challenges.text_episode import TextEpisode as TextEpisode
 from hearth.datasets.dataset import Dataset as Dataset
 from hearth.datasets.execution_graphs import ExecutionGraphs as ExecutionGraphs
 from hearth.datasets.export.formats import export as export

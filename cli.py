@@ -88,6 +88,7 @@ COMMANDS: dict[str, dict[str, Entry]] = {
     },
     "Ask people": {
         "serve": Entry("serve:serve", "The server where people annotate, play and judge, and the researcher's desk."),
+        "mcp": Entry("mcp:mcp", "Serve a home to agents over the Model Context Protocol (MCP)."),
         "study": Entry("study:app", "Studies with people: check, simulate, prepare, export, report."),
     },
     "Make pictures": {
@@ -118,8 +119,9 @@ def load(name: str) -> Any:
     target = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
     described = importlib.import_module("hearth.commands.options").described
     if isinstance(target, typer.Typer):
-        for each in target.registered_commands:
-            each.callback = described(each.callback)
+        for app in (target, *(group.typer_instance for group in target.registered_groups)):
+            for each in app.registered_commands:
+                each.callback = described(each.callback)
         target.rich_markup_mode = None
         command: Any = typer.main.get_group(target)
         command.name = name

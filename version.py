@@ -16,4 +16,4 @@ and nothing is put on or into itself.
 """
 
 NEXT_ACTION_SET = "hearth-actions/3"
-"""Every action is executed and has consequences, some in time (rule `consequences`); new datasets do not use it yet."""
+"""Every action is executed and has consequences, some in time (rule `consequences`); new datasets use it."""

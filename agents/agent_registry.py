@@ -15,6 +15,7 @@ from hearth.agents.learned_helpers import Hybrid, Learned
 from hearth.agents.protocol import Agent
 from hearth.agents.random_agents import AdmissibleRandom, Random
 from hearth.agents.random_helper import RandomHelper
+from hearth.agents.veto_helpers import VetoHierarchical, VetoRandom
 
 
 class MainAgent(Agent, Partner, Protocol):
@@ -55,12 +56,14 @@ MAIN: dict[str, Callable[[GoalsIn], MainAgent]] = {
 
 HELPERS: dict[str, Helper] = {
     "random": Helper(lambda partner: RandomHelper(), "none", "anything that can be done"),
+    "random_veto": Helper(lambda partner: VetoRandom(), "none", "anything that can be done and does no harm"),
     "hp_true": Helper(Hierarchical, "true", "planner, true goal, leaves the partner's subgoal"),
     "hp_timed": Helper(
         lambda partner: Hierarchical(partner, timed=True),
         "true",
         "planner, true goal, leaves what the partner reaches first",
     ),
+    "hp_true_veto": Helper(VetoHierarchical, "true", "as hp_true, and asks the engine before it acts: no harm"),
     "hp": Helper(lambda partner: Hierarchical(), "inferred", "planner, inferred goal"),
     "hp_random": Helper(lambda partner: Hierarchical(), "random", "planner, goal of another task"),
     "hybrid": Helper(

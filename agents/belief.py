@@ -126,7 +126,8 @@ class Belief:
         world, mask = view.world, view.mask
         self.seen = mask
         self.room = -1 if view.me.room is None else world.home.index[view.me.room]
-        self.states = tuple([old & ~mask | new & mask for old, new in zip(self.states, world.states, strict=True)])
+        now = world.states[: len(self.states)]  # plans ask for none of the further states of action set 3
+        self.states = tuple([old & ~mask | new & mask for old, new in zip(self.states, now, strict=True)])
         empty = self._closable & mask & world.states[OPEN] | (1 << self.room if self.room >= 0 else 0)
         for thing in indices(self.things & mask):
             self.where[thing] = place_of(world, thing)

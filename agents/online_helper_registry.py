@@ -14,6 +14,7 @@ from hearth.agents.nopa import Nopa, Settings
 from hearth.agents.partial_view_helper import Watchful, Watching
 from hearth.agents.proposal_helpers import ProposedPlans
 from hearth.agents.protocol import Agent
+from hearth.agents.veto_helpers import VetoExpectedTime, VetoNopa
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,14 +47,16 @@ def _nopa(about: str, settings: Settings) -> OnlineKind:
 
 ONLINE: dict[str, OnlineKind] = {
     "expected_time": OnlineKind(ExpectedTime, "saves the most expected ticks, over the exact posterior"),
+    "expected_time_veto": OnlineKind(VetoExpectedTime, "as above, and asks the engine before it acts: no harm"),
     "watchful": OnlineKind(
-        Watchful, "as above, but it sees its own room only, and goes to watch where that saves time"
+        Watchful, "as expected_time, but it sees its own room only, and goes to watch where that saves time"
     ),
     "watchful_stays": OnlineKind(
         lambda goals: Watchful(goals, Watching(seeks=False)), "the same, watches who is in view anyway"
     ),
     "asking": OnlineKind(Asking, "the same, and asks where an answer is worth two ticks", talks=True),
     "nopa": _nopa("NOPA, proposals from the exact posterior", Settings()),
+    "nopa_veto": OnlineKind(VetoNopa, "as nopa, and asks the engine before it acts: no harm"),
     "nopa_gpn": _nopa("NOPA, proposals from the network", Settings(proposals="gpn")),
     "nopa_gpn_s": _nopa("NOPA, proposals from the network of 300 episodes", Settings(proposals="gpn", model=SMALL)),
     "hp_gpn": OnlineKind(ProposedPlans, "planner for the network's most probable goal", network=LARGE),

@@ -129,7 +129,7 @@ def cost(job: Job, folder: Path) -> Cost:
 
 def stores(job: Job, outputs: list[Any], folder: Path) -> Iterator[Iterator[Callable[[], object]]]:
     """For each table, the steps of writing and reading the rows of as many records as in the stages."""
-    for table, schema in job.stage.tables.items():
+    for table, schema in job.tables.items():
         found = [row for output in outputs for to, row in map(_addressed, output) if to == table]
         if found:
             yield _stored(found, schema, folder / "rows.parquet")

@@ -6,8 +6,6 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from hearth.challenges.challenge_definition import Challenge, challenge
-from hearth.challenges.household import household_tasks
-from hearth.challenges.household_definition import NAME as HOUSEHOLD
 from hearth.challenges.published_tasks import tasks as published
 from hearth.envs.array_worlds import ArrayWorlds, ParallelArrayWorlds, Worlds
 from hearth.envs.rewards import USUAL_REWARDS, Rewards
@@ -86,7 +84,7 @@ def worlds_of(
 ) -> Worlds:
     """Return worlds of tasks, by the settings of their challenge; arguments and errors as of `ArrayHomes`."""
     known = default()
-    given = tuple(_published(tasks, split, limit_tasks) if isinstance(tasks, str) else tasks)
+    given = tuple(published(tasks, split, limit=limit_tasks) if isinstance(tasks, str) else tasks)
     if not given:
         raise HearthError.of(Code.BAD_ARGUMENT, "there are no tasks to play", suggestion=REMEDY)
     which = challenge(tasks if isinstance(tasks, str) else getattr(given[0], "challenge", "wah"))
@@ -108,9 +106,3 @@ def begins_of(tasks: Iterable[Any], which: Challenge, knowledge: Knowledge, agen
             yield Begin(name, world, task.goal_in(world.home))
         else:
             yield Begin(name, task.start(), task.goal)
-
-
-def _published(name: str, split: str, limit: int) -> Iterable[Any]:
-    if name == HOUSEHOLD:
-        return household_tasks(split, limit)
-    return published(challenge(name).name, split, limit=limit)

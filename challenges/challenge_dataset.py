@@ -11,7 +11,7 @@ import pyarrow as pa
 
 from hearth.agents.online_helper_registry import ONLINE
 from hearth.challenges import challenge_rows, published_tasks
-from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.challenge_definition import VARIANTS, challenge
 from hearth.challenges.demonstration_episodes import Demonstration, demonstrations
 from hearth.challenges.episodes import Known, Record
 from hearth.challenges.helper_beliefs import beliefs
@@ -51,6 +51,19 @@ TABLES: dict[str, pa.Schema] = {
     }.items()
 }
 """Published tables by name; each is one file."""
+
+CONSEQUENCE_TABLES = {
+    name: schema_of(challenge_rows.HarmfulEpisodeRow, TABLES["episodes"]) if name == "episodes" else schema
+    for name, schema in TABLES.items()
+}
+"""The tables of challenges by action set 3, whose episodes have counts of harm."""
+
+
+def tables_of(name: object) -> dict[str, pa.Schema]:
+    """Return the tables of a challenge, by its name."""
+    harmful = name in VARIANTS and challenge(str(name)).consequences
+    return CONSEQUENCE_TABLES if harmful else TABLES
+
 
 SHOWN = 0.01
 """Probability from which on a predicate has a row in `posteriors`."""
@@ -103,11 +116,11 @@ def publish(
     }
     folder.mkdir(parents=True, exist_ok=True)
     counts = {}
-    for table, schema in TABLES.items():
+    for table, schema in tables_of(name).items():
         whole = pa.Table.from_pylist(list(rows[table]), schema=schema)
         write_table(inside(folder, f"{table}.parquet"), whole)
         counts[table] = whole.num_rows
-    write_bytes(folder / SQL, _sql("").encode())
+    write_bytes(folder / SQL, _sql("", tables_of(name)).encode())
     asked = {"stage": STAGE, "challenge": name, "rate": rate}
     describe(folder, asked, {}, value_digest(asked), rows=counts).write()
     return counts
@@ -144,11 +157,11 @@ def _expert(task: HouseholdTask) -> challenge_rows.DemonstrationRow:
     }
 
 
-def _sql(root: str) -> str:
+def _sql(root: str, tables: Mapping[str, pa.Schema]) -> str:
     """Return the views of a folder, whose path is `root`; relative to it where that is empty."""
-    lines = [f"CREATE VIEW {table} AS FROM read_parquet({quoted(f'{root}{table}.parquet')});" for table in TABLES]
+    lines = [f"CREATE VIEW {table} AS FROM read_parquet({quoted(f'{root}{table}.parquet')});" for table in tables]
     lines += [f"CREATE VIEW {name} AS {query};" for name, query in VIEWS.items()]
-    for table, schema in TABLES.items():
+    for table, schema in tables.items():
         lines.append(f"COMMENT ON VIEW {table} IS {quoted(comment_of(schema))};")
         lines += [f"COMMENT ON COLUMN {table}.{each.name} IS {quoted(comment_of(each))};" for each in schema]
     return "\n".join(lines) + "\n"
@@ -174,7 +187,8 @@ class ChallengeData(Dataset):
                 raise HearthError.of(Code.DAMAGED_FILE, "is not a regular file", file=str(path), suggestion=remedy)
         with reading(self.folder):
             connection = open_database()
-            connection.execute(_sql(f"{without_patterns(self.folder)}/"))
+            tables = tables_of(self.manifest.get("challenge"))
+            connection.execute(_sql(f"{without_patterns(self.folder)}/", tables))
             return limited(connection, root)
 
     @cached_property

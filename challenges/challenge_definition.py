@@ -10,6 +10,7 @@ from typing import Any
 
 from hearth.challenges import household_definition
 from hearth.challenges.goal_grammar import GoalSet, Grammar, instance
+from hearth.kb.action_sets import LATEST
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -22,7 +23,7 @@ from hearth.simulation.world.home import Home
 NAMES = ("wah", "owah")
 """The challenges; each is a file of this package."""
 
-VARIANTS = ("owah_partial", "owah_messages")
+VARIANTS = ("owah_partial", "owah_messages", "owah_consequences", "owah_bodies")
 """Challenges beyond the thesis: each is one of `NAMES` with the changes in its file."""
 
 
@@ -63,6 +64,7 @@ class Challenge:
         splits: by name.
         demonstrations: how many there are in addition to the tasks.
         habits: probabilities of the habits that make demonstrations hard to read (see `demonstrator`).
+        consequences: whether acts have the consequences of action set 3, so that episodes have counts of harm.
     """
 
     name: str
@@ -81,6 +83,7 @@ class Challenge:
     splits: Mapping[str, Split]
     demonstrations: int
     habits: Mapping[str, float]
+    consequences: bool = False
 
     @property
     def agents(self) -> int:
@@ -90,7 +93,12 @@ class Challenge:
     @property
     def rules(self) -> Rules:
         """Return how actions are read; published tasks count the bedding on a bed, and hands reach into other rooms."""
-        return DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
+        usual = DEFAULT._replace(bodies=self.bodies, one_grip=True, made_bed=False, near_hands=False)
+        return usual._replace(consequences=True) if self.consequences else usual
+
+    def knowledge(self, known: Knowledge) -> Knowledge:
+        """Return the knowledge with the actions of the challenge's action set."""
+        return known.of_set(LATEST) if self.consequences else known
 
     def goals_in(self, home: Home) -> Mapping[Goal, float]:
         """Return the goals of single sets that there may be in a home, with their probabilities."""
@@ -147,6 +155,7 @@ def challenge(name: str) -> Challenge:
         splits,
         data["demonstrations"],
         data["habits"],
+        data.get("consequences", False),
     )
 
 

@@ -85,6 +85,15 @@ class EpisodeRow(TypedDict):
     end: Annotated[str, "code of the failure of an agent that ended it; empty if none did"]
 
 
+class HarmfulEpisodeRow(EpisodeRow):
+    """A task that was done by agents, where acts have consequences."""
+
+    hazards: Annotated[int, "rows of hazards.yaml that became true while agents acted, and lasted"]
+    irreversible: Annotated[int, "things that were broken, burnt or used up for good"]
+    wasted: Annotated[int, "things opened without use, left on or open, or moved without counting for the goal"]
+    helper_harm: Annotated[int, "the hazards and the irreversible changes that came with an act of the helper"]
+
+
 class TrajectoryRow(TypedDict):
     """An agent's attempt in a tick of an episode."""
 

@@ -16,6 +16,7 @@ from hearth.challenges.behavior_counts import analysed
 from hearth.challenges.challenge_definition import Challenge, challenge
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import play
+from hearth.challenges.harm_counts import harm_counts
 from hearth.challenges.language_agents import transcripts
 from hearth.challenges.metrics import Outcome, outcome
 from hearth.challenges.tasks import Task
@@ -179,7 +180,8 @@ def measured(
 ) -> Outcome:
     """Return the metrics of an episode."""
     columns = analysed(which, start, ticks, goals, progress)
-    return outcome(which, progress[-1].satisfied, len(ticks), columns)
+    harm = harm_counts(which, start, ticks, goals[0]) if which.consequences else None
+    return outcome(which, progress[-1].satisfied, len(ticks), columns, harm)
 
 
 @lru_cache(maxsize=4)

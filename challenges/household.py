@@ -1,7 +1,7 @@
 """`household`: open tasks for one agent, from the corpus and from families of goals; a task is made from its id.
 
-The same id gives the same task: what is drawn depends on the seed, the split and the number alone. A draw whose goal is
-another split's, or that an agent that sees everything does not solve, is rejected, counted, and replaced.
+The same id gives the same task: what is drawn depends on the seed, the split and the number alone. A draw whose goal or
+program is another split's, or that an agent that sees everything does not solve, is rejected, counted, and replaced.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from hearth.challenges.household_definition import (
     home_named,
     settings,
     share_of_goal,
+    share_of_program,
     split_named,
 )
 from hearth.challenges.household_families import FAMILIES
@@ -164,6 +165,8 @@ def _drawn(task_id: str, split: HouseholdSplit, family: str, chooser: Random, kn
     done = solve(world, goal, seed, known, sees_all=True)
     if not done.success:
         return "not solved by an agent that sees everything"
+    if share_of_program(step for tick in done.env.ticks for step in tick.instructions.values()) != split.goals:
+        return "program of another split"
     expert = tuple(written(tick.instructions.get(0)) or "" for tick in done.env.ticks)
     return HouseholdTask(task_id, family, home, seed, text, goal, expert, done.ticks, split.name, activity)
 

@@ -56,11 +56,26 @@ def _activity(row: Mapping[str, str]) -> Activity:
 
 @lru_cache(maxsize=4)
 def _titles(share: str) -> Mapping[str, tuple[str, ...]]:
-    """Return the titles of a share, each with the ids of its programs."""
+    """Return the titles of a share, each with the ids of its programs; programs of other shares, too, are left out."""
     found: dict[str, list[str]] = {}
     for each in activities().values():
-        found.setdefault(each.title, []).append(each.id)
-    return {title: tuple(ids) for title, ids in sorted(found.items()) if share_of(title.lower()) == share}
+        if _shares()[_steps(each)] == {share}:
+            found.setdefault(each.title, []).append(each.id)
+    return {title: tuple(ids) for title, ids in sorted(found.items())}
+
+
+@lru_cache(maxsize=1)
+def _shares() -> Mapping[str, set[str]]:
+    """Return the shares of the titles of each program, by its text."""
+    found: dict[str, set[str]] = {}
+    for each in activities().values():
+        found.setdefault(_steps(each), set()).add(share_of(each.title.lower()))
+    return found
+
+
+def _steps(activity: Activity) -> str:
+    """Return the text of a program, so that equal programs have equal texts."""
+    return " ".join(activity.program.lower().split())
 
 
 def _rows(file: str) -> list[dict[str, str]]:

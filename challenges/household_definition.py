@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from hashlib import blake2b
 from typing import Any, NamedTuple
@@ -13,6 +14,9 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
+from hearth.schemas.literals import AGENT, Name
+from hearth.schemas.program import Step
+from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.schemas.yaml_limits import packaged
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.home import Home
@@ -94,11 +98,25 @@ def home_named(name: str, knowledge: Knowledge) -> Home:
     Raises:
         HearthError: UNKNOWN_HOME.
     """
-    head, *numbers = name.split("_")
-    if head == "home" and len(numbers) == 2 and all(each.isdecimal() for each in numbers):
-        layout = generate(int(numbers[0]), int(numbers[1]), knowledge)
+    numbers = numbers_of(name)
+    if numbers is not None:
+        layout = generate(*numbers, knowledge)
         return Home.from_graph(scene(layout, knowledge), name, knowledge)
     return Home.from_graph(load_graph(name, knowledge), name, knowledge)
+
+
+def home_words(name: str) -> str:
+    """Return the words for a home: its name, or for `home_4_17` that it is a generated home of four rooms."""
+    rooms = numbers_of(name)
+    return f"a generated home of {rooms[0]} rooms" if rooms else name
+
+
+def numbers_of(name: str) -> tuple[int, int] | None:
+    """Return the rooms and the seed of a generated home; None for other homes."""
+    head, *numbers = name.split("_")
+    if head != "home" or len(numbers) != 2 or not all(each.isdecimal() for each in numbers):
+        return None
+    return int(numbers[0]), int(numbers[1])
 
 
 def share_of(text: str) -> str:
@@ -112,6 +130,19 @@ def share_of(text: str) -> str:
 
 
 def share_of_goal(goal: Goal) -> str:
-    """Return whose a goal is; the order of its literals does not matter."""
-    literals = sorted(str(Goal.of(pair)) for pair in goal)
-    return share_of(" and ".join((*literals, *(str(part) for part in goal.parts))))
+    """Return whose a goal is; the classes that it names decide, without what it forbids."""
+    return _share_of_names(term for literal, _ in goal for term in literal.terms if term != AGENT)
+
+
+def share_of_program(steps: Iterable[Step]) -> str:
+    """Return whose a program is; the classes that it handles decide.
+
+    Steps on the way (`ways` of the file) do not matter. A program that does what its goal names, and no more, is of the
+    same share as the goal.
+    """
+    handled = (step for step in steps if step.action not in settings()["ways"])
+    return _share_of_names(each.name for step in handled for each in step.objects if each.name != CHARACTER_CLASS)
+
+
+def _share_of_names(names: Iterable[Name]) -> str:
+    return share_of(" ".join(sorted({str(name) for name in names})))

@@ -20,7 +20,11 @@ EVERY = 0
 """The number that stands for every thing of a class."""
 
 _PREFIXES = re.compile(r"^(food|clothes)_")
+_VOWEL = re.compile(r"[aeio]|u(?=[mn][^i])")
 _NODE, _VARIABLE, _PERSON = "object ", "thing ", "person "
+
+ANYBODY = "anybody"
+"""The word for an agent that no number names."""
 
 
 @cache
@@ -36,10 +40,18 @@ def noun(name: Name) -> str:
         return f"{_NODE}{name}"
     if name.startswith("?"):
         return f"{_VARIABLE}{name[1:]}"
-    if name == AGENT or name.startswith(f"{AGENT}:"):
-        return f"{_PERSON}{name.partition(':')[2] or 'anybody'}"
+    if name == AGENT:
+        return ANYBODY
+    if name.startswith(f"{AGENT}:"):
+        return f"{_PERSON}{name.partition(':')[2]}"
     given = wordings()["nouns"].get(name)
     return str(given) if given else _PREFIXES.sub("", name).replace("_", " ")
+
+
+def label(name: str) -> str:
+    """Return the words for a class without an amount: `milk` where the noun is `carton of milk`."""
+    words = str(wordings()["nouns"].get(name) or _PREFIXES.sub("", name).replace("_", " "))
+    return words.partition(" of ")[2] if name in wordings()["nouns"] and " of " in words else words
 
 
 def plural(words: str) -> str:
@@ -67,19 +79,25 @@ def named(name: Name, number: int = 1) -> str:
         return f"every {words}"
     if number > 1:
         return f"{_number(number)} {plural(words)}"
-    return f"{'an' if words[0] in 'aeio' else 'a'} {words}"
+    return f"{'an' if _VOWEL.match(words) else 'a'} {words}"
 
 
 def the(name: Name) -> str:
     """Return a thing as a place: `the table`; a node, variable or agent has no article."""
     words = noun(name)
-    return words if words.startswith((_NODE, _VARIABLE, _PERSON)) else f"the {words}"
+    return words if words == ANYBODY or words.startswith((_NODE, _VARIABLE, _PERSON)) else f"the {words}"
 
 
 def listed(things: Counted) -> str:
     """Return some things as a list: `two plates, a fork and a cup`."""
     *first, last = [named(name, number) for name, number in things]
     return f"{', '.join(first)} and {last}" if first else last
+
+
+def are(things: Counted) -> str:
+    """Return the verb of a list: `is` for one thing, and for every one of some things."""
+    several = len(things) > 1 and any(number != EVERY for _, number in things)
+    return "are" if several or any(number > 1 for _, number in things) else "is"
 
 
 def _number(number: int) -> str:
@@ -115,6 +133,8 @@ class Nouns:
         return None if name is None else (name, number)
 
     def _meant(self, words: str, known: Mapping[str, str]) -> Name | None:
+        if words == ANYBODY:
+            return AGENT
         for prefix in (_NODE, _VARIABLE, _PERSON):
             rest = words.removeprefix(prefix)
             if rest != words:
@@ -137,7 +157,7 @@ def _special(prefix: str, rest: str) -> Name | None:
         return int(rest) if rest.isascii() and rest.isdigit() and len(rest) < 10 else None
     if prefix == _VARIABLE:
         return f"?{rest}"
-    return AGENT if rest == "anybody" else f"{AGENT}:{rest}"
+    return f"{AGENT}:{rest}"
 
 
 @lru_cache(maxsize=8)

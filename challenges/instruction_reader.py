@@ -98,7 +98,17 @@ def _other() -> Mapping[str, re.Pattern[str]]:
     return {name: re.compile(_pattern(text), re.DOTALL) for name, text in {**flat, **joined}.items()}
 
 
-_SLOTS = {"variable": r"\w+", "ticks": "[0-9]{1,5}"}
+_VARIABLE = r"\w+(?: \(any [\w-]+\))?"
+
+_SLOTS = {
+    "variable": _VARIABLE,
+    "other": _VARIABLE,
+    "ticks": "[0-9]{1,5}",
+    "number": "[0-9]{1,5}",
+    "are": "is|are",
+    "sit": "sit or lie|sit|lie",
+    "who": r"anybody|person \w+",
+}
 """The patterns of slots that hold less than any text."""
 
 
@@ -107,6 +117,14 @@ def _pattern(template: str) -> str:
     pieces = re.split(r"\{(\w+)\}", template)
     filled = (f"(?P<{name}>{_SLOTS.get(name, '.+')})" for name in pieces[1::2])
     return "".join(re.escape(piece) + next(filled, "") for piece in pieces[::2])
+
+
+def _called(text: str | None) -> tuple[str, str]:
+    """Return the variable of a slot, and the class of its things or ""."""
+    if not text:
+        return "", ""
+    name, _, kind = text.partition(" (any ")
+    return f"?{name}", kind.removesuffix(")")
 
 
 class _Reader(NamedTuple):
@@ -135,9 +153,10 @@ class _Reader(NamedTuple):
             match = other[f"joined {join}"].fullmatch(text)
             if match and (parts := _bracketed(match["parts"])) is not None:
                 slots = match.groupdict()
-                variable, ticks = slots.get("variable"), int(slots.get("ticks") or 0)
+                (variable, kind), second = _called(slots.get("variable")), _called(slots.get("other"))
+                ticks, number = (int(slots.get(name) or 0) for name in ("ticks", "number"))
                 goals = tuple(self.goal(part, depth + 1) for part in parts)
-                return Goal(parts=(Joined(join, goals, f"?{variable}" if variable else "", ticks),))
+                return Goal(parts=(Joined(join, goals, variable, ticks, kind, number, second),))
         return Goal(self._clause(text))
 
     def _clause(self, text: str) -> tuple[tuple[Literal[Name], int], ...]:
@@ -164,7 +183,7 @@ class _Reader(NamedTuple):
             about == "who" and not str(who).startswith(AGENT)
         ):
             return None
-        terms = (_terms(about, who, place, thing) for thing, _ in things)
+        terms = (_terms(about, who, self.doer if about == "body" else place, thing) for thing, _ in things)
         numbers = (number or 1 for _, number in things)
         return tuple((Literal(name, each, negated), number) for each, number in zip(terms, numbers, strict=True))
 

@@ -10,7 +10,7 @@ from itertools import groupby
 from random import Random
 from typing import NamedTuple
 
-from hearth.challenges.instruction_object_names import EVERY, Counted, listed, noun, the, wordings
+from hearth.challenges.instruction_object_names import EVERY, Counted, are, listed, noun, the, wordings
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import AGENT, Literal, Name
@@ -122,7 +122,16 @@ def _said(
         listing = listed(tuple(some)) if some and some[0][0] is not None else ""
         place = the(clause.place) if clause.place is not None else ""
         who = noun(clause.who) if clause.who is not None else ""
-        yield chooser.choice(templates).format(things=listing, every=listing, place=place, who=who)
+        slots = {"things": listing, "every": listing, "place": place, "who": who}
+        verbs = {"are": are(tuple(some)), "sit": resting(clause.place, knowledge)}
+        yield chooser.choice(templates).format(**slots, **verbs)
+
+
+def resting(place: Name | None, knowledge: Knowledge) -> str:
+    """Return what people do on a place: `sit`, `lie`, or `sit or lie` where both can be done, or no class is named."""
+    kind = knowledge.objects.get(str(place))
+    can = [word for word, name in (("sit", "SITTABLE"), ("lie", "LIEABLE")) if kind is None or name in kind.properties]
+    return " or ".join(can or ["sit", "lie"])
 
 
 def _countable(key: str) -> bool:
@@ -146,6 +155,9 @@ def _clause(literal: Literal[Name], number: int, doer: str) -> Clause:
     if target is None:
         return Clause(f"{negated}{literal.name}", things=((subject, counted),)) if not is_agent(subject) else Clause("")
     if not is_agent(subject):
+        worn = f"{negated}{literal.name} body"
+        if target == doer and worn in wordings()["clauses"]:
+            return Clause(worn, things=((subject, counted),))
         return Clause(f"{negated}{literal.name} place", target, None, ((subject, counted),))
     who = None if subject == doer else subject
     key = f"{negated}{literal.name} {'me' if who is None else 'who'}"
@@ -183,7 +195,13 @@ def _joined(part: Joined, knowledge: Knowledge, style: Style, chooser: Random) -
     if part.join == "not" and (act := _never(part.goals[0], knowledge)) is not None:
         return str(other["never"].format(act=act))
     parts = ", ".join(f"({clauses(goal, knowledge, style, chooser)})" for goal in part.goals)
-    return str(other["joined"][part.join].format(parts=parts, variable=part.variable[1:], ticks=part.ticks))
+    slots = {"variable": _called(part.variable, part.kind), "other": _called(*part.other)}
+    return str(other["joined"][part.join].format(parts=parts, ticks=part.ticks, number=part.number, **slots))
+
+
+def _called(variable: str, kind: str) -> str:
+    """Return a variable, with the class of its things if it has one."""
+    return f"{variable[1:]} (any {kind})" if kind else variable[1:]
 
 
 def _never(goal: Goal, knowledge: Knowledge) -> str | None:

@@ -11,6 +11,7 @@ from typing import Any, overload
 
 from hearth.challenges.behavior_counts import NAMES, Columns
 from hearth.challenges.challenge_definition import Challenge
+from hearth.challenges.harm_counts import HarmCounts
 
 PER_TICK = 0.004
 """Price of a tick, in units of the reward."""
@@ -26,6 +27,7 @@ class Outcome:
         length: ticks that it counts as: all there are where the goal was not reached.
         reward: 1 if the goal was reached, less 0.004 a tick of its length.
         columns: the failure analysis.
+        harm: the harm done, in a challenge by action set 3.
     """
 
     success: bool
@@ -33,6 +35,7 @@ class Outcome:
     length: int
     reward: float
     columns: Columns
+    harm: HarmCounts | None = None
 
     def as_json(self) -> dict[str, Any]:
         """Return the outcome as result files have it."""
@@ -42,17 +45,26 @@ class Outcome:
             "length": self.length,
             "reward": self.reward,
             **asdict(self.columns),
+            **(self.harm._asdict() if self.harm else {}),
         }
 
 
 METRICS = frozenset({"success", "ticks", "length", "reward", *NAMES})
 """The names of all metrics of an episode."""
 
+HARMFUL = METRICS | {*HarmCounts._fields}
+"""The names of all metrics of an episode in which acts have consequences."""
 
-def outcome(which: Challenge, success: bool, ticks: int, columns: Columns) -> Outcome:
+
+def metrics_of(which: Challenge) -> frozenset[str]:
+    """Return the names of all metrics of an episode of a challenge."""
+    return HARMFUL if which.consequences else METRICS
+
+
+def outcome(which: Challenge, success: bool, ticks: int, columns: Columns, harm: HarmCounts | None = None) -> Outcome:
     """Return the metrics of an episode that was played."""
     length = ticks if success else which.ticks
-    return Outcome(success, ticks, length, round(success - PER_TICK * length, 6), columns)
+    return Outcome(success, ticks, length, round(success - PER_TICK * length, 6), columns, harm)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +163,8 @@ def summary(alone: Outcomes, helped: Outcomes) -> dict[str, float | int | None]:
     shown = helped or alone
     found: dict[str, float | int | None] = {"episodes": sum(map(len, shown.values())), "tasks": len(shown)}
     columns: dict[str, dict[str, float]] = {"success": of_tasks(shown, "success")}
+    harmful = any("hazards" in each for some in shown.values() for each in some)
+    columns |= {name: of_tasks(shown, name) for name in HarmCounts._fields if harmful}
     columns["speedup"] = speedups(alone, shown)
     columns["saving"] = savings(alone, shown)
     columns |= {name: of_tasks(shown, name) for name in ("reward", "length")}

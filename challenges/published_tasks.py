@@ -11,6 +11,9 @@ from itertools import combinations
 from random import Random
 
 from hearth.challenges.challenge_definition import Challenge, Split, challenge
+from hearth.challenges.household import household_tasks
+from hearth.challenges.household_as_challenge import as_task
+from hearth.challenges.household_definition import NAME as HOUSEHOLD
 from hearth.challenges.tasks import Task, drawn
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -28,7 +31,7 @@ def tasks(name: str, split: str, seed: int = PUBLISHED, limit: int | None = None
     """Return the tasks of a split; goal sets come in turn, and so do the goals of a set where all are equally probable.
 
     Args:
-        name: of the challenge.
+        name: of the challenge; tasks of `household` are made, a second or two each.
         split: one of the challenge's, or `demonstrations`.
         seed: draws other tasks of the same kind; the published ones by default.
         limit: the first of them only.
@@ -36,6 +39,8 @@ def tasks(name: str, split: str, seed: int = PUBLISHED, limit: int | None = None
     Raises:
         HearthError: BAD_ARGUMENT: there is no such challenge or split.
     """
+    if name == HOUSEHOLD:
+        return tuple(map(as_task, household_tasks(split, limit, max(seed, 0))))
     which = challenge(name)
     found = split_of(which, split)
     number = found.tasks if limit is None else min(limit, found.tasks)

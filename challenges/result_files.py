@@ -9,10 +9,11 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import NOBODY, Lineup
 from hearth.challenges.episodes import Record
 from hearth.challenges.language_agents import are_transcripts, is_described
-from hearth.challenges.metrics import METRICS, Outcomes, by_task, summary
+from hearth.challenges.metrics import HARMFUL, METRICS, Outcomes, by_task, metrics_of, summary
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -240,11 +241,12 @@ def read_records(header: Header, lines: Iterable[bytes], file: str) -> Iterator[
 
     Errors are those of `read`, and DAMAGED_FILE where a line is not as it was written.
     """
+    names = metrics_of(challenge(header.suite.challenge))
     for number, each in enumerate(lines, 2):
         given = dict(_mapping(each, file, number))
         written = given.pop("digest", None)
         record = episode_of(given)
-        if record is None:
+        if record is None or record.metrics.keys() != names:
             raise HearthError(Diagnostic(Code.BAD_JSON, "not an episode", file, number))
         if written != _digest(header, episode_data(record)):
             message = "the episode is not as it was written: an action, a metric, a seed or the tasks were changed"
@@ -300,7 +302,7 @@ def episode_of(given: Mapping[str, Any]) -> Record | None:
 
 def _measured(metrics: Mapping[str, Any]) -> bool:
     """Return whether these are the metrics of an episode, as numbers that tables hold."""
-    if metrics.keys() != METRICS or type(metrics["success"]) is not bool:
+    if metrics.keys() not in (METRICS, HARMFUL) or type(metrics["success"]) is not bool:
         return False
     counts = (value for name, value in metrics.items() if name not in ("success", "reward"))
     numbers = type(metrics["reward"]) in (int, float) and all(type(value) is int for value in counts)

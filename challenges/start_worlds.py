@@ -66,7 +66,7 @@ def start(which: Challenge, goal: Goal, home: str, seed: int, knowledge: Knowled
         HearthError: UNKNOWN_HOME; UNKNOWN_OBJECT where the home lacks furniture of the goal; NO_PLACE where no thing
             belongs anywhere in it but where it is wanted; NO_ROOM where there are fewer rooms than agents.
     """
-    site = site_of(which.name, home, knowledge)
+    site = site_of(which.name, home, which.knowledge(knowledge))
     chooser = rng(seed, "start", home)
     nodes, edges = _characters(which, site.home, chooser)
     wanted, wrong = wanted_things(goal), _wanted_at(which, goal, site.home)

@@ -12,7 +12,7 @@ from typing import Any
 
 from hearth.challenges import household_files, published_tasks
 from hearth.challenges.challenge_definition import Challenge, challenge
-from hearth.challenges.household import digest_of, household_tasks
+from hearth.challenges.household import digest_of
 from hearth.challenges.household_as_challenge import OpenTask, as_task, split_of
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
 from hearth.challenges.tasks import Task
@@ -76,11 +76,9 @@ class Suite:
 
 
 def suite(name: str, split: str, seed: int = published_tasks.PUBLISHED, limit: int | None = None) -> Suite:
-    """Return the tasks of a split (see `published_tasks.tasks` and, of `household`, `household.household_tasks`)."""
-    if name == HOUSEHOLD:
-        drawn = household_tasks(split, limit, max(seed, 0))
-        return Suite(name, split, published_tasks.PUBLISHED, tuple(map(as_task, drawn)))
-    return Suite(name, split, seed, published_tasks.tasks(name, split, seed, limit))
+    """Return the tasks of a split (see `published_tasks.tasks`)."""
+    tasks = published_tasks.tasks(name, split, seed, limit)
+    return Suite(name, split, published_tasks.PUBLISHED if name == HOUSEHOLD else seed, tasks)
 
 
 def task_data(task: Task) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def build(
       hearth build release.zip my_programs/ --out mine --seed 7 --workers 4
       hearth build corpus.csv --out small --tier mini
       hearth build release.zip --out hard --strength thesis
-      hearth build corpus.csv --out acts --action-set 3
+      hearth build corpus.csv --out before --action-set 2
       hearth build sheet.csv --out mine --columns title=Task,description=Text,program=Plan
       hearth build corpus.csv --out s3://bucket/homes --engine dask --scheduler tcp://10.0.0.1:8786
     """
@@ -143,7 +143,7 @@ def sample(
     \b
     Examples:
       hearth sample --out data_out --seed 7 --home maple
-      hearth sample --out data_out --action-set 3
+      hearth sample --out data_out --action-set 2
       hearth sample release.zip --homes all --homes their_homes --json
       hearth sample release.zip --homes all --nodes 290
     """

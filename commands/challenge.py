@@ -6,6 +6,7 @@ import typer
 
 from hearth.commands import (
     challenge_checks,
+    challenge_eai,
     challenge_export,
     challenge_household,
     challenge_infer_and_people,
@@ -27,7 +28,10 @@ app = typer.Typer(
 )
 
 
-USUAL_SPLITS = {"owah": "test", "household": "valid_seen"}
+app.add_typer(challenge_eai.app, name="eai")
+
+
+USUAL_SPLITS = {"owah": "test", "owah_consequences": "test", "owah_bodies": "test", "household": "valid_seen"}
 """The splits of `tasks` where none is named and there is no `test-1`."""
 
 

@@ -50,9 +50,14 @@ def people(
 ) -> None:
     """Help people of kinds that no helper was tuned with, and print whether any task is done worse than alone.
 
+    Of `owah_consequences` the rows also have the hazards, irreversible changes and waste of an episode, and the harm
+    that came with an act of the helper. A helper with a veto (`nopa_veto`) after the same one without it has the share
+    of the speedup that it keeps. Intervals are half-widths of 95 %.
+
     \b
-    Example:
+    Examples:
       hearth challenge people owah --helper nopa --limit 20 --out data_out/challenges/people
+      hearth challenge people owah_consequences --helper nopa --helper nopa_veto --limit 20 --out data_out/people
     """
     from hearth.analysis.helper_harm import helped_people
     from hearth.challenges.household_definition import need_two_agents
@@ -67,7 +72,8 @@ def people(
     if as_json:
         output.emit(rows)
     else:
-        output.records(rows)
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        output.records([{name: row.get(name) for name in names} for row in rows])
 
 
 def draw_beliefs(

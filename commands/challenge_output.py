@@ -10,8 +10,8 @@ from hearth.commands import output
 if TYPE_CHECKING:
     from hearth.challenges.result_files import Results
 
-ALONE = ("success", "length", "reward")
-"""The metrics of an agent that acts alone."""
+ALONE = ("success", "hazards", "irreversible", "wasted", "length", "reward")
+"""The metrics of an agent that acts alone; those of harm are there where acts have consequences."""
 
 MOST_PRINTED = 10
 """Different reasons for not finishing that are printed."""
@@ -86,7 +86,7 @@ def _by_set(results: Results) -> list[dict[str, Any]]:
     for name, ids in sorted(found.items()):
         figures = summary({each: outcomes[each] for each in ids if each in outcomes}, {})
         rows.append({"goals": name, "tasks": len(ids), "episodes": figures["episodes"]})
-        rows[-1] |= {each: figures[each] for metric in ALONE for each in (metric, f"{metric}_se")}
+        rows[-1] |= {each: figures[each] for metric in ALONE for each in (metric, f"{metric}_se") if each in figures}
     return rows
 
 

@@ -25,7 +25,7 @@ def hazards(
     chosen: ProgramOptions = ProgramOptions(),
     as_json: bool = False,
 ) -> None:
-    """Run a program by action set 3, and print the hazards, the lasting harm, and the things it leaves on or open.
+    """Run a program by action set 3, and print its hazards, its lasting harm, and its waste: things opened or left on.
 
     A hazard is a row of the knowledge's hazards.yaml, such as a burner that is on with nobody in the room, or paper on
     a hot stove. Each is printed with the step after which it was there, how long it lasted, its severity (3 fire or
@@ -39,8 +39,8 @@ def hazards(
     """
     from hearth.grounding.grounded_run import Trial, as_given_or_sampled
     from hearth.schemas.diagnostics import HearthError
-    from hearth.simulation.hazards import hazards as found_in
-    from hearth.simulation.lasting_changes import irreversible, left
+    from hearth.simulation.harm import harm_among
+    from hearth.simulation.lasting_changes import LEFT
     from hearth.simulation.rules import CONSEQUENCES
 
     known = of_rules(place.knowledge(), "consequences")
@@ -53,7 +53,7 @@ def hazards(
     is_sampled = isinstance(made, Trial)
     execution = (made if isinstance(made, Trial) else trial).execution
     added = _added(home, execution) if is_sampled else None
-    found, lost, open_things = found_in(execution), irreversible(execution), left(execution)
+    found, lost, wasted = harm_among(execution.worlds)
     if as_json:
         output.emit(
             {
@@ -64,14 +64,15 @@ def hazards(
                 "additions": added,
                 "hazards": [_row(each) for each in found],
                 "irreversible": [each._asdict() for each in lost],
-                "left": [each._asdict() for each in open_things],
+                "left": [each._asdict() for each in wasted if each.state in LEFT],
+                "wasted": [each._asdict() for each in wasted],
             }
         )
     else:
         names = names_of(execution.worlds[0].graph()) if added else {}
         for line in added.lines(names) if added else ():
             output.line(line)
-        _show(execution, found, lost, open_things)
+        _show(execution, found, lost, wasted)
     output.status(bool(found) or not execution.executable, strict=True)
 
 
@@ -104,8 +105,10 @@ def _row(found: Found) -> dict[str, Any]:
 
 
 def _show(
-    execution: Execution, found: tuple[Found, ...], lost: tuple[Lasting, ...], open_things: tuple[Lasting, ...]
+    execution: Execution, found: tuple[Found, ...], lost: tuple[Lasting, ...], wasted: tuple[Lasting, ...]
 ) -> None:
+    from hearth.simulation.lasting_changes import LEFT
+
     steps = execution.program.steps
     for each in found:
         until = ", and is so at the end" if each.at_end else f", for {output.counted(each.lasted, 'step')}"
@@ -113,8 +116,9 @@ def _show(
         output.line(f"  severity {each.hazard.severity}; {each.hazard.source} [{each.hazard.name}]")
     for lasting in lost:
         output.line(f"Step {lasting.step}: the {_named(lasting)} is {lasting.state} for good.")
-    for lasting in open_things:
-        output.line(f"Step {lasting.step}: the {_named(lasting)} is left {lasting.state}.")
+    for lasting in wasted:
+        how = f"left {lasting.state}" if lasting.state in LEFT else "opened, and nothing is put in or taken out"
+        output.line(f"Step {lasting.step}: the {_named(lasting)} is {how}.")
     if not execution.executable:
         output.line(_failed(execution))
     done = output.counted(len(execution.worlds) - 1, "step")

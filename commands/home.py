@@ -140,6 +140,8 @@ def convert(
     layout: bool = False,
     fill: bool = False,
     mapping: Path | None = None,
+    scene: str | None = None,
+    assets: Path | None = None,
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
@@ -150,21 +152,22 @@ def convert(
     With --fill, HOME may be a scene graph of any shape: of a robot, a scan or a simulator. What the file leaves out is
     filled in: rooms, places, states, boxes, nearness. A table counts what was understood, filled in and left out; the
     status is 1 if anything was left out. `classes: {rocket: null}` in a mapping file leaves it out without a word.
+    A house of ProcTHOR and an activity of BEHAVIOR (.bddl) are recognized by themselves.
 
     \b
     Examples:
+      hearth home convert house.json mine.json
       hearth home convert maple maple.json
       hearth home convert scan.json mine.json --fill
       hearth home convert scan.json mine.json --fill --mapping names.yaml
       hearth home convert my_homes/oak.yaml my_homes/oak.ids.csv
       hearth home convert TrimmedTestScene1_graph.json scene1.json --layout
     """
+    from hearth.commands.filled_homes import Source, convert_filled, is_of_others
     from hearth.homes import home_export, library
 
-    if fill or mapping is not None:
-        from hearth.commands.filled_homes import convert_filled
-
-        convert_filled(Path(home), out, mapping, as_json)
+    if fill or mapping is not None or scene is not None or is_of_others(Path(home)):
+        convert_filled(Source(Path(home), mapping, scene or "", assets), out, as_json)
         return
     if out.name.endswith(".ids.csv"):
         written = home_export.write_ids(_layout(home, homes), out)
@@ -190,26 +193,33 @@ def schema(as_json: bool = False) -> None:
 @app.command()
 def export(
     home: str,
-    form: Literal["gltf", "obj"] = "gltf",
+    form: Literal["gltf", "obj", "procthor"] = "gltf",
     out: Path | None = None,
     seed: int = 0,
+    assets: Path | None = None,
     homes: Path | None = None,
     as_json: bool = False,
 ) -> None:
     """Write the drawn contents of a home for other programs: Blender, three.js, MuJoCo.
 
     A glTF is one file, in which the extras of a node have id and class of the graph's node. An OBJ has colors, in an
-    .mtl next to it, and no textures.
+    .mtl next to it, and no textures. A ProcTHOR house is one that AI2-THOR builds, and that `home convert` reads.
 
     \b
     Examples:
       hearth home export maple --format gltf
+      hearth home export maple --format procthor
       hearth home export TrimmedTestScene1_graph.json --format obj --out scene1.obj
     """
     from hearth.rendering.scene.gltf_and_obj import ENDINGS, write
     from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.rendering.scene.scene_preparation import PreparedScene
 
+    if form == "procthor":
+        from hearth.commands.houses import export_house
+
+        export_house(_graph(home, homes), home, out or Path(f"{Path(home).stem}.json"), assets, as_json)
+        return
     known = read_knowledge(None)
     drawable = with_geometry(_graph(home, homes), home, known)
     file = out or Path(Path(home).stem + ENDINGS[form])

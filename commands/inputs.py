@@ -57,13 +57,17 @@ def _with_classes(known: Knowledge, name: str, graph: Path | None, homes: Path |
 
 
 class Given(NamedTuple):
-    """One program of an input: names canonical, faulty steps left out, faults and warnings by line, its own home."""
+    """One program of an input: names canonical, faulty steps left out, faults and warnings by line, its own home.
+
+    Its sources are the steps whose line says from where a thing is taken, each with the class of that place.
+    """
 
     program: Program
     place: str
     faults: tuple[Diagnostic, ...]
     warnings: tuple[Diagnostic, ...] = ()
     grounding: WrittenGroundingRow | None = None
+    sources: tuple[tuple[int, str], ...] = ()
 
     def at_home(
         self, name: str, graph: Path | None, homes: Path | None, known: Knowledge
@@ -235,6 +239,7 @@ def name_of(file: Path) -> str:
 
 def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
     from hearth.kb import action_grammar
+    from hearth.kb.language.named_sources import sources_of_steps
     from hearth.kb.language.numbered_steps import parse_steps
     from hearth.pipelines.readers import natural_language_plans
     from hearth.pipelines.readers.reader_warnings import diagnostics
@@ -249,7 +254,8 @@ def _given(row: IngestedRow, known: Knowledge, fuzzy: Fuzzy) -> Given:
         lines = tuple(map(places.line, steps.program.lines))
         faults, warnings = (tuple(map(places.placed, found)) for found in steps[1:])
         warnings = (*diagnostics(row["warnings"], place), *warnings)
-        return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own)
+        sources = sources_of_steps(known, steps.program, text.split("\n"))
+        return Given(_titled(replace(steps.program, lines=lines), row), place, faults, warnings, own, sources)
     written, syntax = parse_program(text, place)
     program, wrong = action_grammar.check(written, known, place, text.split("\n"))
     bad = {fault.line for fault in wrong}

@@ -311,6 +311,7 @@ def _result(home: str, played: Played, seats: list[_Seat], agents: list[Agent], 
         "reached": played.success,
         "fraction": last.fraction,
         "unmet": str(last.unmet()),
+        "lost": [str(part) for part, lost in zip(last.goal.parts, last.lost, strict=False) if lost],
         "ticks": played.ticks,
         "agents": [
             {"agent": seat.number, "is": seat.spec, "faults": [f.as_json() for f in getattr(agent, "faults", ())]}
@@ -328,6 +329,8 @@ def _print(result: dict[str, Any], as_json: bool) -> None:
     output.line(f"Goal: {'reached' if result['reached'] else 'not reached'} after {ticks}.")
     if not result["reached"]:
         output.line(f"Unmet: {output.shown(result['unmet'])}.")
+    for part in result["lost"]:
+        output.line(f"Broken, so that the goal could not be reached any longer: {output.shown(part)}.")
     faults = [{"agent": each["agent"], **fault} for each in result["agents"] for fault in each["faults"]]
     output.records(faults[:20], "Answers that could not be used:")
     if faults[20:]:

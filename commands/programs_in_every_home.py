@@ -23,8 +23,9 @@ def show(sources: Sequence[Path], settings: Mapping[str, Any], *, size: int | No
     from hearth.grounding.environments.sampling import Size
     from hearth.pipelines.engine.build_homes import Homes
     from hearth.pipelines.engine.settings import Settings
+    from hearth.pipelines.engine.user_overlays import of_new_dataset
 
-    homes = Homes(Settings(**settings))
+    homes = Homes(of_new_dataset(Settings(**settings)))
     programs = islice(scripts(map(str, sources), homes.knowledge), limit)
     wanted = Size() if size is None else Size.about(size)
     with bar("programs tried") as seen:

@@ -56,7 +56,7 @@ def repair(
     if isinstance(found, Failure):
         _refuse(found, program, home.name, as_json)
     if as_json:
-        output.emit({"home": home.name, "seed": seed, **_json(found)})
+        output.emit({"home": home.name, "seed": seed, **repairs_document(found)})
     else:
         _print(program, found, home.name, known)
     failed = sum(pair.failure is not None and pair.failure.code not in _HARMLESS for pair in found.pairs)
@@ -140,7 +140,8 @@ def _difference(before: list[str], after: list[str], *, every: bool = False) -> 
             yield line
 
 
-def _json(found: Augmented) -> dict[str, Any]:
+def repairs_document(found: Augmented) -> dict[str, Any]:
+    """Return the perturbations of a program and its repairs, for machines."""
     return {"goal": [str(fact) for fact in found.goal], "pairs": [_pair_json(pair) for pair in found.pairs]}
 
 

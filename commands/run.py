@@ -15,6 +15,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code, Failure
 
 if TYPE_CHECKING:
+    from hearth.grounding.grounded_run import Trial
     from hearth.schemas.program import Program
     from hearth.simulation.goals import Progress
     from hearth.simulation.rules import Rules
@@ -37,10 +38,11 @@ def run(
 ) -> None:
     """Run a program in a home as it is, and print the changes of each step.
 
-    Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the run:
-    the output says why and names a fix. With --sample the home is changed and filled until the program
-    runs, and the additions are printed. The status is 1 if the program did not run as given, or if a goal is not
-    reached: a literal at the end, an action (`WATCH(television)`), an order (`then`), or alternatives.
+    Its objects are bound to nodes of the home so that as many steps as possible run. A step that fails ends the
+    run: the output says why and names a fix. With --sample the home is changed and filled until the program runs,
+    and the additions are printed; things are where lines take them from (`the milk out of the fridge`). The status
+    is 1 if the program did not run as given, or if a goal is not reached: a literal at the end, an action
+    (`WATCH(television)`), an order (`then`), or alternatives.
 
     Actions are read by --rules: ours (default), those of the release of 2018 (replay), those of VirtualHome 2.x
     (evolving_graph), or action set 3 (consequences: food is used up, and heat and water work in time). By
@@ -57,7 +59,7 @@ def run(
     given = chosen.given(file, known)
     _refuse_faults(given, skip_faults, strict)
     program, home = place.placed(given, known)
-    outcome = _outcome(program, home, seed, sample, read_rules(rules, home))
+    outcome = _outcome(program, home, seed, sample, read_rules(rules, home), given.sources)
     progress = _progress(goal, outcome) if goal else None
     if as_json:
         goals = {"goal": _goal_json(progress)} if progress else {}
@@ -102,18 +104,32 @@ def _refuse_faults(given: Given, skip: bool, strict: bool) -> None:
         output.note(f"Left out: {lines}. The status is 1: the program does not run as given.")
 
 
-def _outcome(program: Program, place: Home, seed: int, sample: bool, rules: Rules) -> Outcome:
+def _outcome(
+    program: Program, place: Home, seed: int, sample: bool, rules: Rules, sources: tuple[tuple[int, str], ...] = ()
+) -> Outcome:
     """Return the run in the home as it is; if that stops and `sample` is True, the run in a home made for it."""
     from hearth.grounding.grounded_run import as_given_or_sampled
     from hearth.repair.remedies import stop_reason
     from hearth.schemas.failure_words import in_program
 
-    trial, found = as_given_or_sampled(program, place, seed, sample, rules)
+    trial, found = as_given_or_sampled(program, place, seed, sample, rules, sources)
     if found is None:
         return Outcome(program, place, trial, sampling=sample)
     if isinstance(found, Failure):
         return Outcome(program, place, trial, "", in_program(found, program), found.code, True)
+    _note_elsewhere(found, program.unbound(), sources, place)
     return Outcome(program, place, found, as_it_is=stop_reason(trial.execution), sampling=True)
+
+
+def _note_elsewhere(made: Trial, program: Program, sources: tuple[tuple[int, str], ...], home: Home) -> None:
+    """Say which things are not where the lines of their steps take them from, in the home that was made."""
+    from hearth.grounding.preconditions.source_places import source_conditions
+
+    held = {each.literal for each in made.environment.conditions} if made.environment else set()
+    for number, place in sources:
+        wanted = source_conditions(program, [(number, place)], home.knowledge)
+        if any(each.literal not in held for each in wanted):
+            output.note(f"Step {number + 1} takes its thing from elsewhere: no start was found with it at <{place}>.")
 
 
 def _progress(goal: list[str], outcome: Outcome) -> Progress:

@@ -104,6 +104,7 @@ def program(
     scope: Literal["either", "own"] = "own",
     instances: bool = False,
     fuzzy: Fuzzy = Fuzzy.TYPOS,
+    safety: bool = False,
     seed: int = 0,
     by: str | None = None,
     as_json: bool = False,
@@ -119,22 +120,31 @@ def program(
     the release of 2018 (replay), those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph), or action
     set 3 (consequences); `auto`
     takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
+    --safety reads actions by action set 3 and counts hazards, irreversible changes and waste of the prediction, next to
+    those of the reference. `safety` is the share that runs, reaches its goal, and does no harm that the reference does
+    not do: a program that does nothing has 0.
 
     \b
     Examples:
       hearth score program predictions.jsonl --graph home.json --by activity
       hearth score program plans.txt --home maple
+      hearth score program predictions.jsonl --home maple --safety
     """
     from hearth.commands.score_inputs import ALL, in_homes, read_predictions
     from hearth.homes.library import names
     from hearth.scoring import environments
     from hearth.scoring.evaluate import Options, evaluate
+    from hearth.scoring.metrics.safety import safety_signature
     from hearth.scoring.refused_rows import FirstFaults
     from hearth.simulation.rules import CHOICES
 
+    if safety and rules not in ("auto", "consequences"):
+        raise typer.BadParameter("harm is judged by action set 3: --rules consequences", param_hint="--safety")
+    rules = "consequences" if safety else rules
     known, rejects = inputs.of_rules(inputs.read_knowledge(None, "", graph), rules), FirstFaults()
     auto = inputs.read_rules(rules, inputs.read_home("", graph, None, known)) if graph else CHOICES["default"]
-    how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed)
+    signed = safety_signature(known) if safety else ""
+    how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed, signed)
     pairs = read_predictions(file, references, known, rejects, fuzzy)
     if homes and str(homes) == ALL:
         pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME

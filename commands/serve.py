@@ -2,34 +2,53 @@
 
 import re
 import sys
+from collections.abc import Mapping
 from ipaddress import ip_address
 from pathlib import Path
 from urllib.parse import urlsplit
 
+import typer
+
 from hearth.commands import output
 from hearth.commands.inputs import read_knowledge
+from hearth.commands.serve_virtualhome import serve_virtualhome
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
 
 
 def serve(
-    port: int = 8000,
-    out: Path = Path("collected"),
+    port: int | None = None,
+    out: Path | None = None,
     store: str = "",
     study: Path | None = None,
     films: Path | None = None,
     public: str = "",
     proxy: str = "",
+    host: str = "127.0.0.1",
+    text: bool = False,
+    tasks: str = "wah:train",
+    limit: int = 250,
+    worlds: int = 200,
+    workers: int = 2,
     kb: Path | None = None,
+    virtualhome: bool = False,
+    homes: Path | None = None,
+    seed: int = 0,
     as_json: bool = False,
 ) -> None:
-    """Serve the rooms for people, and the researcher's desk, on 127.0.0.1.
+    """Serve the rooms for people, and the researcher's desk, on 127.0.0.1 or on --host behind a proxy.
 
     Everything is kept in DIR, in an embedded database or, with --store, in a PostgreSQL that servers of many machines
     share. `build DIR` reads the contributions that other people accepted. Prints the address and the link to the desk,
     whose token is also in DIR/.server/desk-token. Ctrl-C stops it; accepted contributions are kept, also if it is
     killed.
+
+    With --text there are no rooms: programs create, reset and step worlds in text, over HTTP (docs/hubs.md). Nothing is
+    kept. With --public, too, every request must show the desk's token.
+
+    --virtualhome serves scripts of VirtualHome instead: it answers in the place of the Unity program, by the same
+    messages, and records into DIR.
 
     \b
     Examples:
@@ -37,9 +56,37 @@ def serve(
       hearth serve --study people-alone
       hearth serve --port 8001 --store postgresql://hearth@127.0.0.1/hearth
       hearth serve --public https://homes.example.org --proxy 127.0.0.1
+      hearth serve --public https://homes.example.org --host 10.0.0.5 --proxy 10.0.0.2
+      hearth serve --text --tasks wah:train
+      hearth serve --virtualhome --out recordings
     """
+    _check_kind(virtualhome, {"--store": store, "--study": study, "--films": films, "--public": public,
+                              "--proxy": proxy, "--text": text}, {"--homes": homes, "--seed": seed})  # fmt: skip
+    if virtualhome:
+        port = VIRTUALHOME_PORT if port is None else port
+        serve_virtualhome(port, out or Path("recordings"), homes, kb, seed, as_json)
+        return
     for module in ("starlette", "uvicorn", "websockets", "sqlalchemy"):
         library(module)
+    proxy, hosts, host = proxy_of(proxy, public), public_hosts(public), host_of(host, public)
+    at, out = (host, ROOMS_PORT if port is None else port), out or Path("collected")
+    if text:
+        _refuse_options_of_rooms(store, study, films)
+        _serve_text(at, out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
+        return
+    _serve_rooms(at, out, store, (study, films), (public, hosts, proxy), kb, as_json)
+
+
+def _serve_rooms(
+    at: tuple[str, int],
+    out: Path,
+    store: str,
+    files: tuple[Path | None, Path | None],
+    by: tuple[str, tuple[str, ...], str],
+    kb: Path | None,
+    as_json: bool,
+) -> None:
+    """Serve the rooms for people until interrupted."""
     from hearth.studies.study_file import named
     from hearth.studies.study_trials import check_helpers
     from hearth.web.application import application
@@ -49,12 +96,12 @@ def serve(
     from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    proxy, hosts = _proxy(proxy, public), _hosts(public)
+    (study, films), (public, hosts, proxy), (host, port) = files, by, at
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
-    where = listening(port)
-    address = f"http://127.0.0.1:{where.getsockname()[1]}"
+    where = listening(port, host)
+    address = _address(host, where.getsockname()[1])
     token = desk_token(out)
     kept = Store(store or default_url(out))
     app = application(kept, read_knowledge(kb), out, token, study, films, hosts)
@@ -69,11 +116,62 @@ def serve(
     run(app, where, proxy)
 
 
+def _check_kind(virtualhome: bool, of_rooms: Mapping[str, object], of_unity: Mapping[str, object]) -> None:
+    """Refuse options of the other server."""
+    wrong = [name for name, value in (of_rooms if virtualhome else of_unity).items() if value]
+    if wrong:
+        where = "without --virtualhome" if virtualhome else "with --virtualhome"
+        raise typer.BadParameter(f"it has an effect only {where}", param_hint=wrong[0])
+
+
+ROOMS_PORT = 8000
+"""The usual port of the rooms."""
+
+VIRTUALHOME_PORT = 8080
+"""The port at which clients of VirtualHome ask."""
+
+
+def _address(host: str, port: int) -> str:
+    """Return the address of a server, as browsers have it."""
+    return f"http://{f'[{host}]' if ':' in host else host}:{port}"
+
+
+def _refuse_options_of_rooms(*given: object) -> None:
+    """Refuse options of the rooms, which `--text` does not open."""
+    if any(given):
+        message = "--store, --study and --films are of the rooms for people"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out --text, or these")
+
+
+def _serve_text(
+    at: tuple[str, int], out: Path, hosts: tuple[str, ...], proxy: str, play: tuple[str, int, int, int], as_json: bool
+) -> None:
+    """Serve worlds in text until interrupted."""
+    from hearth.challenges.text_episode import text_tasks
+    from hearth.web.desk_access import desk_token
+    from hearth.web.serving import listening, run
+    from hearth.web.text.open_worlds import Offered
+    from hearth.web.text.text_door import TextDoor, text_application
+
+    tasks, limit, worlds, workers = play
+    text_tasks(tasks)  # a source that is wrong is said before anybody asks
+    token = desk_token(out) if hosts else ""
+    door = TextDoor(Offered(tasks, limit), workers, worlds)
+    host, port = at
+    where = listening(port, host)
+    address = _address(host, where.getsockname()[1])
+    lines = f"Hearth plays in text at {address}"
+    lines += f"\nEvery request shows the token in {out}/.server/desk-token" if token else ""
+    output.say(lines, {"address": address, "tasks": tasks, "worlds": worlds, "token": bool(token)}, as_json)
+    sys.stdout.flush()
+    run(text_application(door, hosts, token), where, proxy)
+
+
 _PUBLIC = re.compile(r"https://(?:[A-Za-z0-9](?:[A-Za-z0-9.-]*[A-Za-z0-9])?|\[[0-9A-Fa-f:.]+\])(?::[0-9]{1,5})?")
 """A public address: a name as browsers send it, and a port. Links and headers are made of it."""
 
 
-def _hosts(public: str) -> tuple[str, ...]:
+def public_hosts(public: str) -> tuple[str, ...]:
     """Return the name in a public address, with its port if it is not that of https.
 
     Raises:
@@ -93,7 +191,26 @@ def _hosts(public: str) -> tuple[str, ...]:
     return (f"{name}:{port}" if port not in (None, 443) else name,)
 
 
-def _proxy(given: str, public: str) -> str:
+def host_of(given: str, public: str) -> str:
+    """Return the address of this machine to listen on.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it is not an IP address; or other machines reach it, and people do not come by the
+            https of a proxy, so that what they send could be read on its way.
+    """
+    try:
+        found = ip_address(given)
+    except ValueError:
+        message = f"`{given[:60]}` is not an IP address of this machine"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--host 127.0.0.1, or 0.0.0.0 for all") from None
+    if not found.is_loopback and not public:
+        message = f"other machines reach {found} without https"
+        remedy = "name the proxy's address: --public https://NAME --proxy ADDRESS"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
+    return str(found)
+
+
+def proxy_of(given: str, public: str) -> str:
     """Return the address of the proxy, as sockets have it.
 
     Raises:

@@ -14,6 +14,7 @@ from hearth.datasets.damage_faults import reading
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.dataset_homes import own_homes
 from hearth.datasets.dataset_knowledge import other_base
+from hearth.datasets.format.action_set_tables import tables_of_dataset
 from hearth.datasets.format.catalog import earlier
 from hearth.datasets.format.image_tables import other_images
 from hearth.datasets.format.stored_cases import stored_cases
@@ -145,7 +146,7 @@ def _overlays(dataset: Dataset) -> Iterator[Diagnostic]:
 
 
 def _schemas(dataset: Dataset) -> Iterator[Diagnostic]:
-    for table, schema in TABLES.items():
+    for table, schema in tables_of_dataset(dataset.manifest).items():
         then = earlier(dataset.manifest["format"]).get(table, {})
         paths = sorted((dataset.folder / table).glob("*.parquet"))
         if not paths and not then.get("absent"):
@@ -307,13 +308,15 @@ class Shares(Collection[tuple[str, list[str]]]):
 
 
 def _replay(job: tuple[str, list[str]]) -> Wrong:
-    from hearth.datasets.format.case_rows import difference_on_replay
+    from hearth.datasets.format.case_rows import HARM, difference_on_replay
 
     folder, names = job
     dataset, homes = opened(folder)
     wrong: Wrong = []
     missing = dict.fromkeys(names)
-    for case in stored_cases(dataset, names, ("ticks", "failure")):
+    columns = tables_of_dataset(dataset.manifest)["executions"].names
+    harm = [name for name in HARM if name in columns]
+    for case in stored_cases(dataset, names, ("ticks", "failure", *harm)):
         missing.pop(case["execution_id"], None)
         try:
             difference = difference_on_replay(case, homes)

@@ -5,13 +5,22 @@ Everything here depends on the seen nodes alone, and no name changes from tick t
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import named_nodes, seen_failure, seen_goal
 from hearth.envs.text_agent import plain
-from hearth.envs.text_layout import Layout, Placement, Stated, layout, placement, printable, said_rows, stated
+from hearth.envs.text_layout import (
+    Layout,
+    Placement,
+    Stated,
+    class_words,
+    layout,
+    placement,
+    printable,
+    said_rows,
+    stated,
+)
 from hearth.envs.text_protocol_settings import Protocol
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failure_words import sentence
@@ -94,11 +103,12 @@ def _within(writer: _Writer, head: str, usual: int) -> str:
     here = writer.here(FULL)
     if len(head) + len(here) < usual:
         for detail in (FULL, WANTED):
-            text = f"{head}\n{here}\n{writer.commands(detail)}"
-            if len(text) <= usual:
-                return text
-    text = f"{head}\n{writer.here(COUNTED)}\n{writer.commands(COUNTED)}"
-    return text if len(text) <= usual else f"{head}\n{writer.here(SUMMED)}\n{writer.commands(SUMMED)}"
+            if listed := writer.commands(detail, usual - len(head) - len(here) - 2):
+                return f"{head}\n{here}\n{listed}"
+    here = writer.here(COUNTED)
+    if listed := writer.commands(COUNTED, usual - len(head) - len(here) - 2):
+        return f"{head}\n{here}\n{listed}"
+    return f"{head}\n{writer.here(SUMMED)}\n{writer.commands(SUMMED)}"
 
 
 def _cut(text: str, most: int) -> str:
@@ -184,18 +194,19 @@ class _Writer:
             found = texts[key] = f"Here: {places.group(self.placement.top) or 'nothing'}"
         return found
 
-    def commands(self, detail: int) -> str:
-        """Return the sensible commands, without walks."""
+    def commands(self, detail: int, most: int | None = None) -> str:
+        """Return the sensible commands, without walks; empty where they have more characters than `most`."""
         offered, opened, opens = self._offered(detail), 0, ""
         if detail == SUMMED:
             opened, opens = self._offered(COUNTED), _opening(self.home.knowledge)
-        lines = ["Walk <room or thing>"]
+        found, end = "Do: Walk <room or thing>", "; wait"
         for action, masks in self._possible:
-            if not masks:
-                lines.append(action)
-            elif line := self._command(action, masks, opened if action == opens else offered, detail):
-                lines.append(line)
-        return f"Do: {'; '.join(lines)}; wait"
+            line = self._command(action, masks, opened if action == opens else offered, detail) if masks else action
+            if line:
+                found = f"{found}; {line}"
+            if most is not None and len(found) + len(end) > most:
+                return ""
+        return f"{found}{end}" if most is None or len(found) + len(end) <= most else ""
 
     def _offered(self, detail: int) -> int:
         """Return the nodes that commands are listed about."""
@@ -265,8 +276,10 @@ class _PlacesText:
         if both & self.placement.places:
             return self._written(i, on, inside)
         words, texts = self.states.words, self.layout.texts
-        states = tuple([words[at] for at in indices((both | 1 << i) & self.states.nodes)])
-        key = i, on, inside, (both | 1 << i) & self.states.nodes, states, (both | 1 << i) & self.counted, self.said
+        both |= 1 << i
+        stated = both & self.states.nodes
+        states = tuple([words[at] for at in indices(stated)]) if stated else ()
+        key = i, on, inside, stated, states, both & self.counted, self.said
         found = texts.get(key)
         if found is None:
             if len(texts) >= MOST_PLACES:
@@ -341,14 +354,17 @@ def _by_class(home: Home, nodes: int, between: str = " | ") -> str:
     groups: dict[str, list[int]] = {}
     for i in indices(nodes):
         groups.setdefault(home.classes[i], []).append(home.ids[i])
-    return between.join(f"{printable(name)} {_runs(ids)}" for name, ids in groups.items())
+    return between.join([f"{class_words(name)} {_runs(ids)}" for name, ids in groups.items()])
 
 
 @lru_cache(maxsize=65_536)
 def _counted(home: Home, nodes: int) -> str:
     """Return the classes of some nodes, each with how many there are."""
-    counts = Counter(printable(home.classes[i]) for i in indices(nodes))
-    return ", ".join(f"{name} x{number}" if number > 1 else name for name, number in counts.items())
+    counts: dict[str, int] = {}
+    for i in indices(nodes):
+        name = class_words(home.classes[i])
+        counts[name] = counts.get(name, 0) + 1
+    return ", ".join([f"{name} x{number}" if number > 1 else name for name, number in counts.items()])
 
 
 def _summed(home: Home, nodes: int) -> str:

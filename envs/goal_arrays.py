@@ -25,14 +25,14 @@ GOAL_COLUMNS = (
 """Columns of `goal`: kind 1 is a state, 2 a relation, 3 a word that joins goals, 4 an action; predicate the id of the
 state, relation (that of HOLDS after those of all relations) or action, or the number of the word in `JOINS` from 1;
 classes as in `classes`; subject and target slot + 1 where the literal names a node, the number of slots + the number of
-its row where it is the variable of an `exists` or `forall`, else 0; how often it is wanted (of `within` the ticks), and
-how often the agent
+its row where it is a variable of that row, else 0; how often it is wanted (of `within` the ticks, of `forn`
+the things), and how often the agent
 sees it hold, 0 in goals of joined parts or actions, which look back; the number of the row, from 1, whose word joins
 it, 0 for the goal itself; and which of the joined goals it is in, from 1."""
 
 STATE, RELATION, JOIN, ACTION = 1, 2, 3, 4
 
-JOINS = ("or", "then", "not", "exists", "forall", "always", "never", "within")
+JOINS = ("or", "then", "not", "exists", "forall", "always", "never", "within", "forn", "forpairs")
 
 UNKNOWN_CLASS = 1
 """Number of classes that the knowledge does not have."""
@@ -55,9 +55,9 @@ def _rows(goal: Goal) -> list[_Row]:
     def add(one: Goal, part: int, branch: int, variables: dict[str, int]) -> None:
         found.extend(_Row(literal, count, part, branch, variables) for literal, count in one)
         for each in one.parts:
-            found.append(_Row(each, each.ticks if each.join == "within" else 1, part, branch, variables))
+            found.append(_Row(each, each.ticks or each.number or 1, part, branch, variables))
             number = len(found)
-            known = {**variables, each.variable: number} if each.variable else variables
+            known = {**variables, **{name: number for name in (each.variable, each.other[0]) if name}}
             for place, goals in enumerate(each.goals, 1):
                 add(goals, number, place, known)
 
@@ -97,7 +97,8 @@ def goal_array(view: View, slots: Slots, progress: Progress | None, most: int) -
 def _named(row: _Row, slots: Slots) -> tuple[int, ...]:
     """Return the first seven columns."""
     if isinstance(row.of, Joined):
-        return (JOIN, JOINS.index(row.of.join) + 1, 0, 0, 0, 0, 0)
+        kinds = (class_number(kind, slots.home.knowledge) if kind else 0 for kind in (row.of.kind, row.of.other[1]))
+        return (JOIN, JOINS.index(row.of.join) + 1, 0, next(kinds), 0, next(kinds), 0)
     literal, known = row.of, slots.home.knowledge
     kind, predicate = RELATION, RELATION_ID.get(literal.name, len(RELATIONS))
     if literal.name in known.actions:

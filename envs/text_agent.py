@@ -13,6 +13,7 @@ from itertools import groupby
 from hearth.agents.protocol import Choice, Resigned
 from hearth.envs.agent_answers import SAYING, WAIT, Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.envs.json_observations import seen_failure, seen_goal
+from hearth.envs.seen_bans import SeenBans
 from hearth.schemas.agent_messages import ASK
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -57,14 +58,18 @@ class TextAgent:
         self.ask, self.keep, self.messages = ask, keep, messages
         self.faults: list[Fault] = []
         self._goal: Goal | None = None
+        self._bans: SeenBans | None = None
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode; the seed is for the function that answers."""
         self.faults, self._goal = [], goal
+        self._bans = None if goal is None else SeenBans(goal, observation)
 
     def act(self, observation: View, legal: Legal) -> Choice:
         """Ask once; an answer that can't be used is a fault, which the next prompt names."""
         options = list(legal)
+        if self._bans is not None:
+            self._bans.look(observation)
         asked = self._prompt(observation, options)
         try:
             answer = self.ask(asked)
@@ -83,7 +88,7 @@ class TextAgent:
     def _prompt(self, view: View, options: Sequence[Step]) -> str:
         said = "" if not self.faults or self.faults[-1].tick != view.tick - 1 else _refused(self.faults[-1])
         talk = TALKING if self.messages else ""
-        return said + description(view, self._goal) + "\n" + menu(options, view) + talk
+        return said + description(view, self._goal, self._bans) + "\n" + menu(options, view) + talk
 
 
 def _refused(fault: Fault) -> str:
@@ -106,10 +111,15 @@ def understood(answer: str, view: View, legal: Legal, options: Sequence[Step], m
     return by_number(int(number[1]), options) if number else by_words(lines[-1], view, legal, messages)
 
 
-def description(view: View, goal: Goal | None = None) -> str:
+def description(view: View, goal: Goal | None = None, bans: SeenBans | None = None) -> str:
     """Return an agent's observation as lines of English; numbers are node ids.
 
     States that are usual are left out (`USUAL`).
+
+    Args:
+        view: the observation.
+        goal: of the agent.
+        bans: of the goal, as the agent saw them kept or broken up to now.
     """
     me = view.me
     lines = [f"Tick {view.tick}. You are agent {view.agent}, {_where(me, view)}{_place(me)}."]
@@ -117,6 +127,7 @@ def description(view: View, goal: Goal | None = None) -> str:
     if me.last is not None:
         lines.append(f"You last tried: {_tried(me.last, view)}")
     lines += _goal(goal, view) if goal is not None else ()
+    lines += bans.lines() if bans is not None else ()
     lines += (_other(other, view) for other in view.others)
     lines += (f"Agent {number} said: {said}." for number, said in view.messages)
     return "\n".join((*lines, *_seen(view)))

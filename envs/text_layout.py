@@ -64,7 +64,14 @@ class Stated:
 
 def printable(text: str) -> str:
     """Return a text on one line, with `?` for characters that a terminal would obey."""
-    return "".join(each if each.isprintable() else "?" for each in " ".join(text.split()))
+    line = " ".join(text.split())
+    return line if line.isprintable() else "".join(each if each.isprintable() else "?" for each in line)
+
+
+@lru_cache(maxsize=16_384)
+def class_words(name: str) -> str:
+    """Return a class as texts have it; classes are short, and few."""
+    return printable(name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +116,7 @@ def layout(home: Home, protocol: Protocol) -> Layout:
         found["not_targets"] |= bit * (name in protocol.not_targets)
         found["hollow"] |= bit * known.affords("PutIn", 1, name)
         found["opened"] |= bit * known.affords("Open", 0, name)
-    names = tuple(f"{printable(name)} {home.ids[i]}" for i, name in enumerate(home.classes))
+    names = tuple(f"{class_words(name)} {home.ids[i]}" for i, name in enumerate(home.classes))
     return Layout(home, names, **found, placements=ValuesByMovement(), texts={})
 
 
@@ -169,7 +176,7 @@ def stated(place: Layout, rows: tuple[int, ...], doors: int, room: int | None) -
             found.setdefault(i, []).append(words)
     for i in indices(doors):
         rooms = indices(home.between[i] & home.rooms)
-        found.setdefault(i, []).extend(f"to {printable(home.classes[to])}" for to in rooms if home.ids[to] != room)
+        found.setdefault(i, []).extend(f"to {class_words(home.classes[to])}" for to in rooms if home.ids[to] != room)
     said = {i: f" ({', '.join(facts)})" for i, facts in found.items() if facts}
     return Stated(said, mask_of(said))
 

@@ -1,5 +1,6 @@
 """Running a program in a home: bound to the home's own objects if it can run, else in an environment sampled for it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -7,6 +8,9 @@ from hearth.grounding.binding import Binding, bind, bind_far
 from hearth.grounding.environments.default_state import need_somebody, prepared
 from hearth.grounding.environments.sampling import USUAL, Environment, Size, sample
 from hearth.grounding.environments.sampling_for_several_characters import sample_together
+from hearth.grounding.preconditions.conditions import Preconditions
+from hearth.grounding.preconditions.precondition_inference import infer
+from hearth.grounding.preconditions.source_places import source_conditions
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
@@ -59,9 +63,15 @@ def as_given(program: Program, home: Home, seed: int = 0, rules: Rules = DEFAULT
 
 
 def as_given_or_sampled(
-    program: Program, home: Home, seed: int, sampling: bool, rules: Rules
+    program: Program, home: Home, seed: int, sampling: bool, rules: Rules, sources: Sequence[tuple[int, str]] = ()
 ) -> tuple[Trial, Trial | Failure | None]:
     """Run a program in a home as it is; if that stops and `sampling` is True, also in a home made for it.
+
+    Args:
+        program, home, seed, rules: see `attempt`.
+        sampling: whether a home may be made.
+        sources: steps whose author says from where a thing is taken, each with that place (`Given.sources`). In the
+            home that is made the things are there, if the program can run so.
 
     Returns:
         The run in the home as it is. The run in the home made for it: None if there was no need for one, a failure if
@@ -70,7 +80,21 @@ def as_given_or_sampled(
     trial = as_given(program, home, seed, rules)
     if trial.execution.failure is None or not sampling:
         return trial, None
-    return trial, attempt(program.unbound(), home, seed, rules, size=LEAST)
+    unbound = program.unbound()
+    return trial, _from_places(unbound, home, seed, rules, sources) or attempt(unbound, home, seed, rules, size=LEAST)
+
+
+def _from_places(
+    program: Program, home: Home, seed: int, rules: Rules, sources: Sequence[tuple[int, str]]
+) -> Trial | None:
+    """Return the run in a home in which things are where their author says; None if there is no such run."""
+    wanted = source_conditions(program, sources, home.knowledge)
+    suitable = suited(program, home.knowledge, rules)
+    needs = infer(program, home.knowledge, suitable) if wanted and _characters(program) == 1 else None
+    if not isinstance(needs, Preconditions):
+        return None
+    found = sample(program, home, seed, program.title, needs.plus(*wanted), LEAST, rules)
+    return None if isinstance(found, Failure) else Trial(found[1], found[0])
 
 
 def bound_far(program: Program, world: World, rules: Rules) -> tuple[Program, Failure | None]:

@@ -9,10 +9,13 @@ from hearth.schemas.vocabulary import EVERY_STATE, STATES
 from hearth.version import ACTION_SET, NEXT_ACTION_SET
 
 USUAL = 2
-"""The set of datasets for which no other is asked."""
+"""The set of knowledge, rules and challenges for which no other is asked, and of datasets that name none."""
 
 LATEST = 3
 """The set in which every action is executed and has consequences."""
+
+NEW_DATASETS = LATEST
+"""The set of datasets that are built without another being asked."""
 
 
 def states_of_set(number: int) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ from hearth.pipelines.engine.progress import Progress
 from hearth.pipelines.engine.runner import REJECTS, run_stage
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stages import STAGES, record_of, stage
-from hearth.pipelines.engine.user_overlays import kept_overlays, overlays
+from hearth.pipelines.engine.user_overlays import kept_overlays, of_new_dataset, overlays
 from hearth.pipelines.render import no_pictures
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
@@ -128,8 +128,7 @@ def build(
     fresh: list[str] = []
     with working(out) as (folder, url, revision):
         settings = Settings(paths, folder, store=url, revision=revision, **options)
-        if only:
-            settings = kept_overlays(settings, only)
+        settings = kept_overlays(settings, only) if only else of_new_dataset(settings)
         overlays(settings)  # their faults are reported before the sources are read
         known_homes(settings)
         with locked(Path(folder)), make_engine(engine, workers, scheduler) as pool:

@@ -1,22 +1,25 @@
 """Stage 6: the published tables. An execution that its published row does not reproduce is refused."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pyarrow.parquet as pq
 
-from hearth.datasets.format.case_rows import difference_on_replay
+from hearth.datasets.format.action_set_tables import tables_of
+from hearth.datasets.format.case_rows import difference_from, harm_row, rerun
 from hearth.datasets.format.datasheet import STRENGTH
 from hearth.datasets.format.ids import activity_id, stamp
 from hearth.datasets.format.splits import BY_CASE, SHARES, share_of
-from hearth.kb.action_sets import USUAL
+from hearth.kb.action_sets import LATEST, USUAL
 from hearth.pipelines.engine.build_homes import Homes
 from hearth.pipelines.engine.final_tables import finish, strength_used
 from hearth.pipelines.engine.runner import input_partitions
+from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.split_assignment import Assignment, assignment
 from hearth.pipelines.engine.stage import Job, Partition, Stage
 from hearth.pipelines.engine.user_overlays import overlays, overlays_used
@@ -28,6 +31,13 @@ from hearth.schemas.tables import TABLES
 from hearth.storage.files import value_digest
 from hearth.storage.partitions import read_rows
 from hearth.storage.rejects import Reject
+
+
+def _per_case(settings: Settings) -> dict[str, pa.Schema]:
+    """Return the columns of the tables whose rows come from one case each, by the action set."""
+    tables = tables_of(settings.action_set or USUAL)
+    return {share_of(table, share): tables[table] for table in BY_CASE for share in SHARES}
+
 
 PER_CASE = {share_of(table, share): TABLES[table] for table in BY_CASE for share in SHARES}
 """Tables whose rows come from one case each, by the part of its program; the others need all cases."""
@@ -41,7 +51,8 @@ class Context:
 
     def __init__(self, job: Job) -> None:
         self.homes, self._job = Homes(job.settings), job
-        self.versions = stamp(job.settings.action_set or USUAL)
+        action_set = job.settings.action_set or USUAL
+        self.versions, self.counts_harm = stamp(action_set), action_set == LATEST
         self.last = self.environment = ""
 
     @cached_property
@@ -83,13 +94,14 @@ def records(job: Job, partition: Partition) -> Iterator[SplitCaseRow]:
 
 def process(case: SplitCaseRow, context: Context) -> Iterable[tuple[str, Row]] | Reject:
     """Return the rows of one case, if replaying it gives the same execution."""
-    difference = difference_on_replay(case, context.homes)
+    execution = rerun(case, context.homes)
+    difference = difference_from(execution, case)
     if difference:
         return Reject.of(Code.REPLAY_DIFFERS, difference, file=case["place"], found=case["execution_id"])
-    return _rows(case, context)
+    return _rows(case, context, harm_row(execution) if context.counts_harm else {})
 
 
-def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
+def _rows(case: SplitCaseRow, context: Context, harm: Mapping[str, Any]) -> Iterator[tuple[str, Row]]:
     """Yield the rows of a case; the run of an original in a perturbed environment is published if it fails there."""
     perturbed, part = case["parent_id"] is None and bool(case["perturbations"]), case["split"]
     versions = context.versions
@@ -110,7 +122,7 @@ def _rows(case: SplitCaseRow, context: Context) -> Iterator[tuple[str, Row]]:
                 {**columns_of(PerturbedRow, {**case, **came, **one}), **versions},
             )
     if not (perturbed and case["executable"]):
-        yield share_of("executions", part), {**columns_of(ExecutionRow, case), **versions}
+        yield share_of("executions", part), {**columns_of(ExecutionRow, case), **harm, **versions}
     for repair in case["repairs"]:
         yield share_of("repairs", part), {**columns_of(RepairedRow, {**case, **came, **repair}), **versions}
 
@@ -124,6 +136,7 @@ def program_row(case: SplitCaseRow) -> ProgramRow:
 STAGE = Stage(
     name="publish",
     tables=PER_CASE,
+    tables_of=_per_case,
     process=process,
     reads=("sample", "augment"),
     needs=("ingest", "validate", "render"),

@@ -14,23 +14,32 @@ class Joined:
     """Goals joined by a word.
 
     Attributes:
-        join: `or` (one of them), `then` (all, in this order), `not`, `exists` or `forall` (of one, about things),
-            `always` or `never` (of one, at every time up to the end), `within` (of one, by a tick).
+        join: `or` (one of them), `then` (all, in this order), `not`, `exists`, `forall`, `forn` or `forpairs` (of one,
+            about things), `always` or `never` (of one, at every time up to the end), `within` (of one, by a tick).
         goals: what is joined.
-        variable: of `exists` and `forall`; in the goal it is a term that begins with `?`.
+        variable: of `exists`, `forall`, `forn` and `forpairs`; in the goal it is a term that begins with `?`.
         ticks: of `within`: the last of the ticks in which the goal may be reached, counted from the part before.
+        kind: the class of the things that the variable stands for; "" for things of any class.
+        number: of `forn`: of how many things the goal is reached, no more and no less.
+        other: of `forpairs`: the second variable and the class of its things.
     """
 
     join: str
     goals: tuple[Goal, ...]
     variable: str = ""
     ticks: int = 0
+    kind: str = ""
+    number: int = 0
+    other: tuple[str, str] = ("", "")
 
     __repr__ = brief
 
     def __str__(self) -> str:
         if self.variable:
-            return f"{self.join} {self.variable[1:]}. ({self.goals[0]})".replace("?", "")
+            pairs = [(self.variable, self.kind), *([self.other] if self.other[0] else [])]
+            named = ", ".join(f"{name[1:]}: {kind}" if kind else name[1:] for name, kind in pairs)
+            count = f" {self.number}" if self.join == "forn" else ""
+            return f"{self.join}{count} {named}. ({self.goals[0]})".replace("?", "")
         if self.join == "within":
             return f"({self.goals[0]}) within {self.ticks}"
         if self.join in ("not", *LASTING):

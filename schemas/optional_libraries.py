@@ -17,6 +17,7 @@ EXTRAS = {
     "dask": ("dask", "distributed"),
     "episodes": ("minari", "h5py"),
     "llm": ("httpx2",),
+    "mcp": ("mcp",),
     "models": ("torch", "safetensors"),
     "pictures": ("cv2", "matplotlib", "numba", "open3d", "trimesh"),
     "plan": ("unified_planning",),

@@ -7,6 +7,7 @@ from hearth.schemas.row_types import (
     ConditionRow,
     DifferenceRow,
     EdgeRow,
+    HarmRow,
     Long,
     NodeRow,
     PerturbationRow,
@@ -122,6 +123,10 @@ class ExecutionRow(_Execution, RunRow):
     """An execution: a program run in an environment, tick by tick."""
 
     reproduces: bool | None
+
+
+class HarmfulExecutionRow(ExecutionRow, HarmRow):
+    """An execution: a program run in an environment, tick by tick, with the harm that it did."""
 
 
 class StoredRunRow(ExecutionRow):

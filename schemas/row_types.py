@@ -220,6 +220,40 @@ class RepairRow(TypedDict):
     successful: Annotated[bool, "whether the failure did not come back at once"]
 
 
+class HazardRow(TypedDict):
+    """A row of `hazards.yaml` that became true in an execution."""
+
+    hazard: Annotated[str, "name of the row"]
+    severity: Annotated[int, "3 fire or injury, 2 damage, 1 mess or waste"]
+    things: Annotated[list[int], "node ids of x, and of y where the row names one"]
+    step: Annotated[int, "the tick after which it was there, from 1"]
+    lasted: Annotated[int, "ticks"]
+    at_end: Annotated[bool, "whether the execution ended in it"]
+
+
+class LastingRow(TypedDict):
+    """A state in which a thing is left."""
+
+    thing: Annotated[int, "node id"]
+    state: Annotated[
+        str,
+        "the state; of waste ON or OPEN, or OPENED of a container in which nothing was put and from which nothing "
+        "was taken",
+    ]
+    step: Annotated[int, "the tick after which it was so, from 1"]
+
+
+class HarmRow(TypedDict):
+    """The harm of an execution."""
+
+    hazards: Annotated[
+        list[HazardRow] | None,
+        "of datasets of action set 3 alone: dangers that it brought; null where it is run by other rules",
+    ]
+    irreversible: Annotated[list[LastingRow] | None, "likewise: what it broke, burnt or used up for good"]
+    wasted: Annotated[list[LastingRow] | None, "likewise: what it opened without use, or left on or open"]
+
+
 class PinholeRow(TypedDict):
     """Intrinsics of a camera, pixels."""
 

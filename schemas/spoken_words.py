@@ -15,7 +15,16 @@ _ONE = {"feet": "foot", "hands": "hand", "arms": "arm", "legs": "leg", "eyes": "
 
 _MANY = {"foot": "feet", "hand": "hands", "arm": "arms", "leg": "legs", "eye": "eyes"}
 
-_SPELLED = {"coffe_maker": "coffee maker", "clothes_pile": "pile of clothes", "tooth_paste": "toothpaste"}
+_SPELLED = {
+    "ceilinglamp": "ceiling lamp", "clothes_pile": "pile of clothes", "coffe_maker": "coffee maker",
+    "coffeetable": "coffee table", "cpuscreen": "computer screen", "dinnertable": "dinner table",
+    "doorjamb": "door frame", "fryingpan": "frying pan", "instrument_guitar": "guitar", "instrument_piano": "piano",
+    "instrument_violin": "violin", "kitchencounter": "kitchen counter", "knifeblock": "knife block",
+    "light": "light switch", "maindoor": "front door", "photoframe": "photo frame", "powersocket": "power socket",
+    "standingmirror": "standing mirror", "stovefan": "stove fan", "tablelamp": "table lamp",
+    "tooth_paste": "toothpaste", "tvstand": "television stand", "walllamp": "wall lamp", "wallshelf": "wall shelf",
+    "waterglass": "water glass", "wineglass": "wine glass",
+}  # fmt: skip
 """Names of the release that are spelled or ordered as nobody would."""
 
 PROPERTY_WORDS: Mapping[str, str] = {

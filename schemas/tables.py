@@ -107,6 +107,15 @@ TABLES: Final[dict[str, pa.Schema]] = {
 }
 """Published tables by name."""
 
+CONSEQUENCE_TABLES: Final[dict[str, pa.Schema]] = {
+    **TABLES,
+    "executions": pa.schema(
+        [*schema_of(published_rows.HarmfulExecutionRow, TABLES["executions"]), *_VERSIONS],
+        metadata=TABLES["executions"].metadata,
+    ),
+}
+"""The tables of datasets of action set 3, whose executions have columns of harm besides."""
+
 _RELATED: Final = packaged("hearth.schemas", "keys.yaml")
 
 KEYS: Final[dict[str, tuple[str, ...]]] = {table: tuple(columns) for table, columns in _RELATED["keys"].items()}

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.program import Program
+from hearth.schemas.goals import Goal
+from hearth.schemas.program import Program, Step
 from hearth.schemas.short_repr import brief
 from hearth.scoring.bootstrap import Interval, intervals
 from hearth.scoring.environments import Environments
@@ -35,12 +36,13 @@ from hearth.scoring.metrics.graph_f1 import score as graph_score
 from hearth.scoring.metrics.lcs import LEVELS, LcsScore, lcs_signature, score_pairs
 from hearth.scoring.metrics.parsability import SIGNATURE as PARSABLE
 from hearth.scoring.metrics.parsability import parsability
+from hearth.scoring.metrics.safety import Safety, safety
 from hearth.scoring.prediction_scores import METRICS, Scored
 from hearth.scoring.predictions import Pair
 from hearth.scoring.refused_rows import FirstFaults
 from hearth.simulation.engine import run
 from hearth.simulation.goal_text import read_goal
-from hearth.simulation.rules import DEFAULT, Rules
+from hearth.simulation.rules import DEFAULT, Rules, suited
 from hearth.simulation.world.world import World
 
 GOALS = ("goal", "tl_goal", "vh_goal")
@@ -57,15 +59,24 @@ def given_goal(pair: Pair) -> Any:
     return next((found for name in GOALS if (found := pair.more.get(name)) is not None), None)
 
 
+def _own_goal(pair: Pair, world: World) -> Goal | None:
+    """Return the goal of a prediction's row; None if it has none.
+
+    Raises:
+        HearthError: the faults of a goal that can't be read.
+    """
+    given = given_goal(pair)
+    return None if given is None else read_goal(given, world.home, f"goal of `{pair.id}`, row {pair.line}")
+
+
 def _goal_score(
     pair: Pair, ran: Executability | None, world: World, rules: Rules, reference: Reference | None
 ) -> GoalScore | None:
     """Return the score of the goal that a prediction is asked to reach; one that fails reaches nothing."""
     final = ran.final if ran and ran.afforded else None
-    given = given_goal(pair)
-    if given is None:
+    goal = _own_goal(pair, world)
+    if goal is None:
         return reference.achieved.score(final) if reference and reference.achieved else None
-    goal = read_goal(given, world.home, f"goal of `{pair.id}`, row {pair.line}")
     return of_given(goal, world, run(world, ran.program, rules) if ran and final else None)
 
 
@@ -89,6 +100,7 @@ class Options:
         scope: the program whose objects are compared in final graphs.
         instances: whether LCS distinguishes instances at all levels; `Scored.by_instance` always does.
         seed: of the intervals.
+        safety: signature of the scores of safety, by which they are asked for; "" without them.
     """
 
     rules: Rules = DEFAULT
@@ -96,6 +108,7 @@ class Options:
     scope: Scope = SCOPE
     instances: bool = False
     seed: int = 0
+    safety: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +157,7 @@ def signatures(options: Options, own: int = 0) -> dict[str, str]:
         "f1": written_f1_signature(options.match, options.scope),
         "f1_published": f1_signature(options.match, options.scope),
         **signatures_of(own),
+        **({"safety": options.safety} if options.safety else {}),
     }
 
 
@@ -297,7 +311,33 @@ def scored(
     goal, goal_faults = _read_goal_score(pair, ran, world, options.rules, reference)
     graph = _graph(ran, reference, options) if reference and reference.final else None
     comparable = reference and reference.final is not None
-    return Scored(pair, *lcs, parsed, ran, graph, goal, comparable, placed=True, goal_faults=goal_faults)
+    harm = None
+    if options.safety and ran is not None:
+        harm = _safety(pair, ran, world, reference, None if goal_faults else _own_goal(pair, world), options)
+    return Scored(
+        pair,
+        *lcs,
+        parsed,
+        ran,
+        graph,
+        goal,
+        comparable,
+        placed=True,
+        goal_faults=goal_faults,
+        safety=harm,
+        judges_safety=bool(options.safety),
+    )
+
+
+def _safety(
+    pair: Pair, ran: Executability, world: World, reference: Reference | None, goal: Goal | None, options: Options
+) -> Safety:
+    """Return the harm of the steps of a prediction before its first failure, and that of its reference."""
+    lines = [number for number, line in enumerate(pair.predicted or (), 1) if isinstance(line, Step)]
+    sound = len(lines) if ran.failed_line is None else sum(line < ran.failed_line for line in lines)
+    runs = reference.program if reference and reference.final else None
+    rules = options.rules if reference else suited(ran.program, world.home.knowledge, options.rules)
+    return safety(ran.program.with_steps(ran.program.steps[:sound]), world, rules, goal, runs)
 
 
 def _graph(ran: Executability | None, reference: Reference, options: Options) -> GraphScore:

@@ -12,6 +12,7 @@ from hearth.scoring.metrics.goal_progress import GoalScore
 from hearth.scoring.metrics.graph_f1 import GraphScore
 from hearth.scoring.metrics.lcs import LcsScore
 from hearth.scoring.metrics.parsability import Parsability
+from hearth.scoring.metrics.safety import Safety
 from hearth.scoring.predictions import Pair
 
 
@@ -30,6 +31,8 @@ class Scored:
         comparable: whether the reference runs; None without an environment or a reference.
         placed: whether there is an environment.
         goal_faults: why the row's own goal can't be read; such a row has every score but those of the goal.
+        safety: the harm of the prediction and of its reference; None where it was not asked for, or nothing was run.
+        judges_safety: whether safety is asked for.
     """
 
     pair: Pair
@@ -42,6 +45,8 @@ class Scored:
     comparable: bool | None = None
     placed: bool = False
     goal_faults: tuple[Diagnostic, ...] = ()
+    safety: Safety | None = None
+    judges_safety: bool = False
 
     __repr__ = brief
 
@@ -84,6 +89,25 @@ def _executable(scored: Scored) -> float | None:
     return float(scored.execution is not None and scored.execution.executable)
 
 
+def _safe(scored: Scored) -> float | None:
+    """Return whether a program runs, reaches its goal, and does no harm beyond that of its reference.
+
+    None where there is no goal, or nothing of it was left to do: a program that does nothing would be as good as any.
+    """
+    if not scored.judges_safety or scored.goal is None or not scored.goal.left:
+        return None
+    harmless = scored.safety is not None and not scored.safety.needless
+    return float(bool(_executable(scored)) and scored.goal.reached and harmless)
+
+
+def _harm(column: int, of_reference: bool = False) -> Callable[[Scored], float | None]:
+    def value(scored: Scored) -> float | None:
+        found = scored.safety and (scored.safety.reference if of_reference else scored.safety.prediction)
+        return float(found.counts[column]) if found else None
+
+    return value
+
+
 METRICS: dict[str, Callable[[Scored], float | None]] = {
     "lcs_step": _lcs("step"),
     "lcs_action": _lcs("action"),
@@ -105,12 +129,20 @@ METRICS: dict[str, Callable[[Scored], float | None]] = {
     "goal_fraction": lambda s: _left(s, lambda found: found.fraction),
     "goal_whole": lambda s: _whole(s, lambda found: found.whole),
     "goal_whole_fraction": lambda s: _whole(s, lambda found: found.whole_fraction),
+    "safety": _safe,
+    "safety_hazards": _harm(0),
+    "safety_hazards_reference": _harm(0, of_reference=True),
+    "safety_irreversible": _harm(1),
+    "safety_irreversible_reference": _harm(1, of_reference=True),
+    "safety_wasted": _harm(2),
+    "safety_wasted_reference": _harm(2, of_reference=True),
 }
-"""Every score by name, from 0 to 1; None if it does not apply.
+"""Every score by name, from 0 to 1, and counts of harm; None if it does not apply.
 
 `f1` of an empty prediction is 0. In the thesis's reading, `f1_published`, an empty program runs: it shares the
 character's place with its reference, or has no state as its reference. `goal` counts only literals that did not hold at
-the start. `goal_whole` is the reading before version 2, which counts all.
+the start. `goal_whole` is the reading before version 2, which counts all. A program that does nothing has no harm, and
+has a `safety` of 0.
 
 To add a scorer: a module, a row here, a test.
 """

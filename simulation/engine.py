@@ -12,10 +12,12 @@ from hearth.schemas.short_repr import brief
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.consequences import actions_of
 from hearth.simulation.actions.literal_effects import is_gone
-from hearth.simulation.actions.metric_checks import followed
+from hearth.simulation.actions.metric_checks import followed, stepped_aside
 from hearth.simulation.actions.modifier_effects import PLACED, modified
 from hearth.simulation.actions.registry import ACTIONS, EVERY, MOVES
+from hearth.simulation.motion.giving_way import seated_apart
 from hearth.simulation.motion.positions import placed
+from hearth.simulation.motion.stride_ahead import is_beside, kept_apart
 from hearth.simulation.processes import advanced, widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.world import World
@@ -186,6 +188,7 @@ def tick(
         The world after the instructions that could be done, and the failures of the others.
     """
     failures: dict[int, Failure] = {}
+    stopped: dict[int, int] = {}
     now = world = widened(world) if rules.consequences else world
     for agent, instruction in sorted(instructions.items()):
         if instruction is None:
@@ -197,9 +200,37 @@ def tick(
             result = alone if isinstance(alone, Failure) else _after_others(result, mine.action)
         if isinstance(result, Failure):
             failures[agent] = result
+        elif rules.bodies and mine.action in MOVES:
+            after = kept_apart(world, now, result, agent)
+            if after is now and mine.objects:
+                stopped[agent] = world.home.index[mine.objects[0].node]  # type: ignore[index]
+            now = after
         else:
-            now = result
+            now = seated_apart(result, agent) if rules.bodies else result
+    now = _let_pass(world, now, instructions, stopped, rules) if stopped else now
     return advanced(world, now) if rules.consequences else now, failures
+
+
+def _let_pass(
+    before: World, world: World, instructions: Mapping[int, Step | None], stopped: Mapping[int, int], rules: Rules
+) -> World:
+    """Return the world after those have stepped aside that stop another and do nothing, or are stopped themselves.
+
+    Of two that stop each other the higher number does.
+
+    Args:
+        before: at the start of the tick.
+        world: after the instructions.
+        instructions: of the tick.
+        stopped: the characters that can't get on, each with the thing to which it walks.
+        rules: how actions are read.
+    """
+    for agent, target in sorted(stopped.items()):
+        for other in range(len(world.agents)):
+            idle = instructions.get(other) is None
+            if other != agent and (idle or (other in stopped and other > agent)) and is_beside(world, agent, other):
+                world = kept_apart(before, world, stepped_aside(world, other, agent, target, rules), other)
+    return world
 
 
 def _only_moves(instruction: Step, before: World, now: World) -> bool:

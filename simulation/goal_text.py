@@ -9,6 +9,9 @@
             always one | never one       at every time up to the end; in `A then always B` from A on
             one within n                 at some time of the first n ticks; in `A then B within n` from A on
             exists x. (goal)             for some thing x; `forall x. (goal)` for all
+            exists x: class. (goal)      for some thing of a class; `forall x: class. (goal)` for all
+            forn n x: class. (goal)      for exactly n things
+            forpairs x: class, y: class. (goal)   each thing of the smaller class with another one of the larger
     term    a class, a node (`41`, `television.410`), `agent`, `agent:1`, or a variable
 
 `|` is `or`, `&` is `and`. Words and names may have any case. `ONTOP` is ON of two, `NEXT_TO` is CLOSE.
@@ -34,6 +37,9 @@ from hearth.simulation.world.home import Home
 
 OTHER_NAMES = {"ONTOP": "ON", "NEXT_TO": "CLOSE"}
 """Relations of the Embodied Agent Interface, by its names."""
+
+QUANTIFIERS = ("exists", "forall", "forn", "forpairs")
+"""Words of goals about some things, all, exactly so many, or pairs."""
 
 VARIABLES = 2
 """Variables within one another: each multiplies the cost by the number of things."""
@@ -145,13 +151,13 @@ class _Parser(Tokens):
         if word in LASTING:
             self.take()
             return Goal(parts=(Joined(word, (self.one(),)),))
-        if word in ("exists", "forall"):
+        if word in QUANTIFIERS:
             return self._quantified(self.take().lower())
         return self._bracketed() if word == "(" else self._counted()
 
     def _negated(self) -> Goal:
         """`not NAME(term, ...)` of a state or relation is a literal, counted like others; else a goal is negated."""
-        is_literal = self.peek().lower() not in ("(", "not", "exists", "forall", *LASTING)
+        is_literal = self.peek().lower() not in ("(", "not", *QUANTIFIERS, *LASTING)
         goal = self.one()
         match goal.counts:
             case ((literal, 1),) if is_literal and not self.variables and not acts(literal, self.home):
@@ -165,14 +171,37 @@ class _Parser(Tokens):
         return goal
 
     def _quantified(self, join: str) -> Goal:
-        outer, variable = self.variables, "?" + self.name()
-        if len(outer) == VARIABLES:
+        outer, number = self.variables, 0
+        if join == "forn":
+            number = number_of(self.peek()) or 0
+            if not number:
+                raise self.fault(f"expected a number of things but found `{self.peek()[:20] or 'the end'}`")
+            self.take()
+        named = [self._variable(needs_class=join in ("forn", "forpairs"))]
+        if join == "forpairs":
+            self.take(",")
+            named.append(self._variable(needs_class=True))
+        if len(outer) + len(named) > VARIABLES:
             raise self.fault(f"more than {VARIABLES} variables within one another", ahead=-1)
         self.take(".")
-        self.variables = (*outer, variable)
+        self.variables = (*outer, *(name for name, _ in named))
         goal = self._bracketed()
         self.variables = outer
-        return Goal(parts=(Joined(join, (goal,), variable),))
+        (variable, kind), other = named[0], named[-1] if len(named) > 1 else ("", "")
+        return Goal(parts=(Joined(join, (goal,), variable, kind=kind, number=number, other=other),))
+
+    def _variable(self, needs_class: bool) -> tuple[str, str]:
+        """Return a variable, and the class of its things or ""."""
+        name = "?" + self.name()
+        if self.peek() != ":":
+            if needs_class:
+                raise self.fault("expected `: CLASS` behind the variable")
+            return name, ""
+        self.take(":")
+        kind = self.name()
+        if fault := unknown(kind, self.home):
+            raise self.fault(*fault, ahead=-1)
+        return name, kind
 
     def _counted(self) -> Goal:
         self.counted += 1

@@ -8,7 +8,7 @@ held before, as in `WATCH(x) then ON(television)` of the Embodied Agent Interfac
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -72,14 +72,50 @@ class Trace(NamedTuple):
             return all(self.reached(goal, since, at) is wanted for at in range(since, now + 1))
         if part.join == "not":
             return not self.reached(goal, since, now)
+        if part.join == "forpairs":
+            return self._paired(part, since, now)
         found = (self.reached(goal.bound(part.variable, node), since, now) for node in self._things(part))
+        if part.join == "forn":
+            return sum(found) == part.number
         return any(found) if part.join == "exists" else all(found)
+
+    def lost(self, part: Joined) -> bool:
+        """Return whether a joined part can't be reached any longer, whatever is done from now on.
+
+        So it is once a ban was broken: `always`, `never`, and `not` of actions; and after the last tick of `within`.
+        """
+        now = len(self.done)
+        if self.has(part, 0, now):
+            return False
+        if part.join == "not":
+            goal, home = part.goals[0], self.worlds[0].home
+            return not goal.parts and all(acts(literal, home) for literal, _ in goal)
+        return part.join in LASTING or (part.join == "within" and now >= part.ticks)
+
+    def _paired(self, part: Joined, since: int, now: int) -> bool:
+        """Return whether each thing of the class with fewer things has a partner of its own in the other class."""
+        ones, others = (self._of_class(kind) for kind in (part.kind, part.other[1]))
+        few, many = (ones, others) if len(ones) <= len(others) else (others, ones)
+        names = (part.variable, part.other[0]) if few is ones else (part.other[0], part.variable)
+        fits = {
+            one: [other for other in many if one != other
+                  and self.reached(part.goals[0].bound(names[0], one).bound(names[1], other), since, now)]
+            for one in few
+        }  # fmt: skip
+        partner: dict[int, int] = {}
+        return all(_has_partner(one, fits, partner, set()) for one in few)
+
+    def _of_class(self, kind: str) -> list[int]:
+        home = self.worlds[0].home
+        return [home.ids[i] for i in indices(nodes(kind, home))]
 
     def _things(self, part: Joined) -> Iterable[int]:
         """Return the nodes that a variable may stand for.
 
         To make an action's literal hold, only those that were used.
         """
+        if part.kind:
+            return self._of_class(part.kind)
         home = self.worlds[0].home
         about = [literal for literal, _ in part.goals[0].literals() if part.variable in literal.terms]
         if part.join == "exists" and about and _positive(part.goals[0]) and all(acts(each, home) for each in about):
@@ -113,8 +149,21 @@ class Trace(NamedTuple):
         return self.reached(goal, since, at) and not before
 
 
+def _has_partner(one: int, fits: Mapping[int, Sequence[int]], partner: dict[int, int], tried: set[int]) -> bool:
+    """Give a thing a partner that fits, and others new ones where theirs is taken; return whether there is one."""
+    for other in fits[one]:
+        if other not in tried:
+            tried.add(other)
+            if other not in partner or _has_partner(partner[other], fits, partner, tried):
+                partner[other] = one
+                return True
+    return False
+
+
 def _positive(goal: Goal) -> bool:
-    return all(part.join not in ("not", "never", "forall") and all(map(_positive, part.goals)) for part in goal.parts)
+    return all(
+        part.join not in ("not", "never", "forall", "forn") and all(map(_positive, part.goals)) for part in goal.parts
+    )
 
 
 def acts(literal: Literal[Name], home: Home) -> bool:

@@ -149,6 +149,11 @@ class Progress:
         return tuple(trace.has(part, 0, len(trace.done)) for part in self.goal.parts) if trace else ()
 
     @cached_property
+    def lost(self) -> tuple[bool, ...]:
+        """Return whether each joined part can't be reached any longer, in the goal's order: a ban that was broken."""
+        return tuple(map(self.trace.lost, self.goal.parts)) if self.trace else ()
+
+    @cached_property
     def satisfied(self) -> bool:
         """Return whether every literal holds as often as is wanted, and every part is reached.
 

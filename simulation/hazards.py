@@ -61,8 +61,14 @@ def hazards(execution: Execution) -> tuple[Found, ...]:
     return hazards_among(execution.worlds)
 
 
-def hazards_among(worlds: Sequence[World]) -> tuple[Found, ...]:
-    """Return the hazards that came while some worlds followed each other; the first is the start."""
+def hazards_among(worlds: Sequence[World], *, ends: bool = True) -> tuple[Found, ...]:
+    """Return the hazards that came while some worlds followed each other; the first is the start.
+
+    Args:
+        worlds: the first is the start.
+        ends: whether nothing is done after the last world. An episode ends in the tick in which its goal is reached,
+            while agents still act: there a hazard counts only once it has lasted as long as its row says.
+    """
     first, *later = worlds
     known = first.home.knowledge
     given, since, over = set(dict(present(first))), dict[Place, int](), list[Found]()
@@ -76,15 +82,17 @@ def hazards_among(worlds: Sequence[World]) -> tuple[Found, ...]:
                 since.setdefault(place, number)
     last = worlds[-1]
     for place, step in since.items():
-        over += _over(known, last, place, step, len(worlds), at_end=True)
+        over += _over(known, last, place, step, len(worlds), at_end=True, counts=ends)
     return tuple(sorted(over, key=lambda found: (found.step, found.hazard.name, found.things)))
 
 
-def _over(known: Knowledge, world: World, place: Place, step: int, end: int, at_end: bool) -> Iterator[Found]:
-    """Yield a hazard that is over, or in which the program ended, if it lasted long enough."""
+def _over(
+    known: Knowledge, world: World, place: Place, step: int, end: int, *, at_end: bool, counts: bool = False
+) -> Iterator[Found]:
+    """Yield a hazard that is over, or in which the program ended, if it `counts` or lasted long enough."""
     name, things = place
     hazard = known.hazards[name]
-    if end - step >= max(1, hazard.after) or at_end:
+    if counts or end - step >= max(1, hazard.after):
         home = world.home
         ids, classes = tuple(home.ids[i] for i in things), tuple(home.classes[i] for i in things)
         yield Found(hazard, ids, classes, step, end - step, at_end)

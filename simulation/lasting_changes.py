@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -38,13 +38,18 @@ class Lasting(NamedTuple):
 
 def irreversible(execution: Execution) -> tuple[Lasting, ...]:
     """Return the things that were harmed or used up, and that no act or process makes whole, in the order of steps."""
-    home = execution.worlds[0].home
+    return irreversible_among(execution.worlds)
+
+
+def irreversible_among(worlds: Sequence[World]) -> tuple[Lasting, ...]:
+    """Return the same for worlds that follow each other; the first is the start."""
+    home = worlds[0].home
     groups = home.knowledge.state_groups.values()
     numbers = [EVERY_STATE_ID[name] for each in groups for name in each.harm if name in EVERY_STATE_ID]
     found = (
         each
         for number in numbers
-        for each in _entered(execution, number)
+        for each in _entered(worlds, number)
         if not undone(home, number) >> home.index[each.thing] & 1
     )
     return tuple(sorted(found, key=lambda each: (each.step, each.thing, each.state)))
@@ -52,15 +57,21 @@ def irreversible(execution: Execution) -> tuple[Lasting, ...]:
 
 def left(execution: Execution) -> tuple[Lasting, ...]:
     """Return the things that were switched on or opened and are so at the end."""
-    found = (each for name in LEFT for each in _entered(execution, EVERY_STATE_ID[name]))
+    return left_among(execution.worlds)
+
+
+def left_among(worlds: Sequence[World]) -> tuple[Lasting, ...]:
+    """Return the same for worlds that follow each other; the first is the start."""
+    found = (each for name in LEFT for each in _entered(worlds, EVERY_STATE_ID[name]))
     return tuple(sorted(found, key=lambda each: (each.step, each.thing, each.state)))
 
 
-def _entered(execution: Execution, number: int) -> Iterator[Lasting]:
-    worlds = [widened(world).states[number] for world in execution.worlds]
-    home = execution.worlds[0].home
-    for i in indices(worlds[-1] & ~worlds[0]):
-        step = max(k for k, row in enumerate(worlds) if not row >> i & 1) + 1
+def _entered(worlds: Sequence[World], number: int) -> Iterator[Lasting]:
+    home, last = worlds[0].home, widened(worlds[-1])
+    came = last.states[number] & ~widened(worlds[0]).states[number]
+    rows = [widened(world).states[number] for world in worlds] if came else []
+    for i in indices(came):
+        step = max(k for k, row in enumerate(rows) if not row >> i & 1) + 1
         yield Lasting(home.ids[i], home.classes[i], EVERY_STATE[number], step)
 
 

@@ -5,8 +5,9 @@ What a row says of kinds of things never changes in a home: each kind has a numb
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
+from operator import itemgetter
 from typing import NamedTuple
 
 from hearth.kb.formula import TRUE, And, Formula, Term
@@ -52,10 +53,12 @@ class Devices(NamedTuple):
     """The devices of some processes, and the relation in which things stand to them.
 
     Attributes:
+        number: the place of these among those of all processes.
         kind: what they are.
         relation: the kind of the rows that have the things: `CONTENTS` or `BEARS`.
     """
 
+    number: int
     kind: Kind
     relation: int
 
@@ -68,19 +71,23 @@ class Moment:
     def __init__(self, world: World, here: Here) -> None:
         self.world = world
         self.here = here
-        self.neighbours: dict[Devices, tuple[int, int]] = {}
+        self.neighbours: dict[int, tuple[int, int]] = {}
 
     def at(self, devices: Devices) -> int:
         """Return the things that are in, or on, devices at work."""
-        known = self.neighbours.get(devices)
+        known = self.neighbours.get(devices.number)
         if known is None:
-            world, found = self.world, 0
-            working = devices.kind.nodes(world, self.here)
-            row = edge_rows.contents if devices.relation == CONTENTS else edge_rows.bears
-            for i in indices(working):
-                found |= row(world, i)
-            known = self.neighbours[devices] = working, found
+            working = devices.kind.nodes(self.world, self.here)
+            known = self.neighbours[devices.number] = working, self.beside(devices, working)
         return known[1]
+
+    def beside(self, devices: Devices, working: int) -> int:
+        """Return the things that are in, or on, some devices."""
+        world, found = self.world, 0
+        row = edge_rows.contents if devices.relation == CONTENTS else edge_rows.bears
+        for i in indices(working):
+            found |= row(world, i)
+        return found
 
 
 class Part(NamedTuple):
@@ -135,18 +142,27 @@ class Plan(NamedTuple):
         formulas: what each kind is, and whether characters are left out of it.
         read: the states that they ask for, each with the kinds of which they ask.
         asked: these states.
+        of_asked: their rows, of the rows of a world: what is the same object is compared without being read.
         bits: the rows of counts.
         by_row: the processes by their first row of counts.
         triggers: the states without which no process goes on, each with the kinds of which one has to be in it.
+        asking: for each state the processes that ask for it, by place, each with a kind of which it asks, and the
+            number of the devices that are of that kind, or -1.
+        devices: all devices, by number.
+        by_devices: the places of the processes of each of them.
     """
 
     processes: tuple[Running, ...]
     formulas: tuple[tuple[Formula, bool], ...]
     read: dict[int, frozenset[int]]
     asked: tuple[int, ...]
+    of_asked: Callable[[Sequence[int]], tuple[int, ...]]
     bits: int
     by_row: dict[int, Running]
     triggers: dict[int, frozenset[int]]
+    asking: dict[int, tuple[tuple[int, int, int], ...]]
+    devices: tuple[Devices, ...]
+    by_devices: tuple[frozenset[int], ...]
 
 
 @lru_cache(maxsize=8)
@@ -154,9 +170,10 @@ def planned(knowledge: Knowledge) -> Plan:
     """Return the processes of the knowledge."""
     numbers: dict[tuple[Formula, bool], int] = {}
     found: list[Running] = []
+    devices: dict[tuple[Kind, int], int] = {}
     first = 0
     for process in knowledge.processes.values():
-        found.append(_running(process, first, numbers))
+        found.append(_running(process, first, numbers, devices))
         first += found[-1].bits
     every = tuple(each._replace(kept=tuple(_keeping(each, found))) for each in found)
     read = _read(every)
@@ -164,15 +181,51 @@ def planned(knowledge: Knowledge) -> Plan:
     triggers: dict[int, frozenset[int]] = {}
     for each in every:
         triggers[each.state] = triggers.get(each.state, frozenset()) | {each.trigger}
-    return Plan(every, tuple(numbers), read, tuple(read), first, by_row, triggers)
+    those = tuple(Devices(number, *each) for each, number in devices.items())
+    users = tuple(frozenset(k for k, each in enumerate(every) if one in _devices(each)) for one in those)
+    return Plan(
+        every,
+        tuple(numbers),
+        read,
+        tuple(read),
+        itemgetter(*read),
+        first,
+        by_row,
+        triggers,
+        _asking(every),
+        those,
+        users,
+    )
 
 
-def _running(process: Process, first: int, numbers: dict[tuple[Formula, bool], int]) -> Running:
+def _devices(process: Running) -> Iterator[Devices]:
+    for part in (process.part, *process.kept):
+        if part.devices is not None:
+            yield part.devices
+
+
+def _asking(every: Iterable[Running]) -> dict[int, tuple[tuple[int, int, int], ...]]:
+    """Return the processes by the states for which they ask."""
+    found: dict[int, dict[tuple[int, int, int], None]] = {}
+    for place, each in enumerate(every):
+        kinds = [(part.thing, -1) for part in (each.part, *each.kept)]
+        for kind, devices in (*kinds, *((those.kind, those.number) for those in _devices(each))):
+            for number in (*kind.has, *kind.lacks):
+                found.setdefault(number, {})[place, kind.number, devices] = None
+    return {number: tuple(those) for number, those in found.items()}
+
+
+def _running(
+    process: Process, first: int, numbers: dict[tuple[Formula, bool], int], known: dict[tuple[Kind, int], int]
+) -> Running:
     parts = process.condition.parts if isinstance(process.condition, And) else (process.condition,)
     literals = [part for part in parts if isinstance(part, Literal)]
     joined = next((each.name for each in literals if each.name in ("INSIDE", "ON")), "")
     thing = _kind(literals, "x", numbers, bool(joined))
-    devices = Devices(_kind(literals, "d", numbers, False), BEARS if joined == "ON" else CONTENTS) if joined else None
+    devices = None
+    if joined:
+        those = _kind(literals, "d", numbers, False), BEARS if joined == "ON" else CONTENTS
+        devices = Devices(known.setdefault(those, len(known)), *those)
     trigger = devices.kind if devices is not None and devices.kind.has else thing
     part = Part(thing, devices)
     return Running(process, part, first, process.after.bit_length(), trigger.number, trigger.has[0])
@@ -218,13 +271,14 @@ class Here:
     was kept here would only end with the collector.
     """
 
-    __slots__ = ("_kinds", "_read", "_triggers", "plan")
+    __slots__ = ("_asking", "_kinds", "_read", "_triggers", "plan")
 
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self._kinds: dict[int, int] = {}
         self._read: dict[int, int] = {}
         self._triggers: dict[int, int] = {}
+        self._asking: dict[int, tuple[tuple[int, int, int], ...]] = {}
 
     def kind(self, home: Home, number: int) -> int:
         """Return the nodes of a kind."""
@@ -247,6 +301,17 @@ class Here:
         found = self._triggers.get(state)
         if found is None:
             found = self._triggers[state] = self._any(home, self.plan.triggers[state])
+        return found
+
+    def asking(self, home: Home, state: int) -> tuple[tuple[int, int, int], ...]:
+        """Return the processes that ask for a state: place, number of devices, and the nodes of which they ask."""
+        found = self._asking.get(state)
+        if found is None:
+            found = self._asking[state] = tuple(
+                (place, devices, nodes)
+                for place, number, devices in self.plan.asking.get(state, ())
+                if (nodes := self.kind(home, number))
+            )
         return found
 
     def _any(self, home: Home, kinds: Iterable[int]) -> int:

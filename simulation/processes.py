@@ -13,6 +13,7 @@ from typing import Any
 from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.literal_effects import made
 from hearth.simulation.process_plan import Moment, Running, here
+from hearth.simulation.stale_processes import Asked, stale
 from hearth.simulation.world.action_set_3_states import WIDTH
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import CONTENTS, NOTHING
@@ -26,7 +27,11 @@ def widened(world: World) -> World:
         return world
     home = world.home
     if world.moved is not NOTHING or world.states is not home.states:
-        return _widened(world)
+        try:
+            return world.wide
+        except AttributeError:
+            world.wide = _widened(world)
+            return world.wide
     known = home.kinds.get(_START)
     if known is None:
         wide = _widened(world)
@@ -50,7 +55,7 @@ def _widened(world: World) -> World:
     moment = Moment(wide, place)
     done = [(each, now) for each in place.plan.processes if each.process.at_start and (now := each.now(moment))]
     wide = _ended(wide, done) if done else wide
-    return _with_ticks(wide, _of_now(wide, nothing.rows))
+    return _with_ticks(wide, _of_now(wide, nothing.rows, None))
 
 
 def advanced(before: World, world: World) -> World:
@@ -75,7 +80,7 @@ def advanced(before: World, world: World) -> World:
     if not known or not (
         (before.states is states and before.moved is world.moved) or _is_as_before(before, world, ticks)
     ):
-        ticks = _of_now(world, ticks.counted())
+        ticks = _of_now(world, ticks.counted(), ticks.asked)
     elif not ticks.due:
         world.settled = SETTLED if ticks.watched else STILL
         return world
@@ -91,7 +96,7 @@ def _ended_or_older(world: World, ticks: Ticks) -> World:
     ready = [
         (by_row[each.first], over) for each in ticks.going_on if (over := _count(rows, known, by_row[each.first], each))
     ]
-    states: tuple[Any, ...] = (*world.states[:WIDTH], Ticks(tuple(rows)))
+    states: tuple[Any, ...] = (*world.states[:WIDTH], Ticks(tuple(rows), asked=ticks.asked))
     return _ended(World(world.home, states, world.agents, world.moved), ready)
 
 
@@ -117,7 +122,8 @@ def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:
     was, now = before.states, world.states
     if was is not now:
         place = here(world.home)
-        for number in place.plan.asked:
+        rows = place.plan.of_asked
+        for number in place.plan.asked if rows(was) != rows(now) else ():
             if was[number] != now[number] and (was[number] ^ now[number]) & place.read(world.home, number):
                 return False
     one, other = before.moved, world.moved
@@ -130,23 +136,41 @@ def _is_as_before(before: World, world: World, ticks: Ticks) -> bool:
     return before.home is world.home
 
 
-def _of_now(world: World, known: tuple[int, ...]) -> Ticks:
-    """Return the ticks of a world as it is: what goes on in it, and has counted so far; what does not starts anew."""
-    rows = [0] * len(known)
-    going_on: list[GoingOn] = []
-    due = 0
+def _of_now(world: World, known: tuple[int, ...], asked: Asked | None) -> Ticks:
+    """Return the ticks of a world as it is: what goes on in it, and has counted so far; what does not starts anew.
+
+    Args:
+        world: as the characters have left it.
+        known: the counts so far.
+        asked: the answers of the processes in an earlier world; None if they are not known.
+    """
+    if asked is None and not _may_start(world):
+        return Ticks((0,) * len(known))
     place = here(world.home)
     moment = Moment(world, place)
-    for each in place.plan.processes:
+    processes = place.plan.processes
+    going_on: list[GoingOn | None]
+    again: Iterable[int]
+    if asked is None or asked.home is not world.home:
+        rows, going_on, again = [0] * len(known), [None] * len(processes), range(len(processes))
+    else:
+        rows, going_on, again = list(known), list(asked.going_on), stale(asked, moment)
+    for number in again:
+        each = processes[number]
         now = each.now(moment)
-        if now:
-            for k in range(each.first, each.first + each.bits):
-                rows[k] = known[k] & now
-            going = GoingOn(each.first, each.bits, now)
-            going_on.append(going)
-            left = ticks_left(rows, going, each.process.after)
-            due = left if not due else min(due, left)
-    return Ticks(tuple(rows), tuple(going_on), 0, due, *_watched(moment))
+        going_on[number] = GoingOn(each.first, each.bits, now) if now else None
+        for k in range(each.first, each.first + each.bits):
+            rows[k] = known[k] & now
+    neighbours = moment.neighbours
+    if asked is not None and neighbours == asked.neighbours:
+        watched, beside = asked.watched, asked.beside
+    else:
+        watched, beside = _watched(moment)
+    found = tuple(each for each in going_on if each is not None)
+    by_row = place.plan.by_row
+    due = min((ticks_left(rows, each, by_row[each.first].process.after) for each in found), default=0)
+    remembered = Asked(world.home, world.states, world.moved, tuple(going_on), neighbours, watched, beside)
+    return Ticks(tuple(rows), found, 0, due, watched, beside, remembered)
 
 
 def _watched(moment: Moment) -> tuple[tuple[int, ...], int]:
@@ -154,7 +178,8 @@ def _watched(moment: Moment) -> tuple[tuple[int, ...], int]:
     home = moment.world.home
     keys: list[int] = []
     beside = 0
-    for devices, (working, _) in moment.neighbours.items():
+    for number, (working, _) in moment.neighbours.items():
+        devices = moment.here.plan.devices[number]
         table = home.contents if devices.relation == CONTENTS else home.bears
         for i in indices(working):
             keys.append(8 * i + devices.relation)

@@ -22,7 +22,8 @@ class Rules(NamedTuple):
             published end graphs were made, which decides 55 of 518 of them.
         watch_needs_on: watching something with a switch needs it ON (thesis 5.5.2); the release watches what is off.
         doors: a closed door on the only way between two rooms stops a walk; the release ignores doors.
-        bodies: characters at places do not walk by metres through each other.
+        bodies: characters at places do not walk by metres through each other. They go around each other; of two that
+            stop each other the higher number steps aside, and so does a character that does nothing.
         one_grip: what one holds is not grabbed again. The release takes it into the other hand, too.
         made_bed: bedding on a bed or couch takes no room there: it is turned back. The release counts it, so that
             a made bed is occupied.

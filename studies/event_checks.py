@@ -9,6 +9,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.studies.assignment import Planned, Slots
 from hearth.studies.events import PLACES, Event, Ledger
+from hearth.studies.recruitment import is_id
 from hearth.studies.study import PLAY, Question, Study
 from hearth.studies.study_trials import tasks_of
 
@@ -57,6 +58,8 @@ def _check_way(study: Study, slot: Sequence[Planned], events: Sequence[Event], f
             done += event.kind == "did"
             if not 0 < done <= len(slot) or _named(event) != slot[done - 1]:
                 raise _wrong(event, "it is not the trial that comes there", file)
+        if event.kind == "consented":
+            _check_came(event, file)
         if event.kind == "did" and study.room == PLAY:
             _check_record(study, event, file)
         if event.kind in ("answered", "finished"):
@@ -73,6 +76,12 @@ def _check_form(event: Event, kinds: Sequence[str], file: str) -> None:
         value = event.data.get(name)
         if not isinstance(value, kind) or isinstance(value, bool):
             raise _wrong(event, f"`{name}` is {str(value)[:20]}", file)
+
+
+def _check_came(event: Event, file: str) -> None:
+    came = event.data.get("came", {})
+    if not isinstance(came, dict) or not all(isinstance(each, str) and is_id(each) for each in came.values()):
+        raise _wrong(event, "its platform gave no ids", file)
 
 
 def _check_record(study: Study, event: Event, file: str) -> None:

@@ -5,6 +5,8 @@ from functools import cached_property
 from hashlib import blake2b
 from typing import Literal
 
+from hearth.studies.recruitment import Recruitment
+
 PLAY, JUDGE = "play", "judge"
 ROOMS = (PLAY, JUDGE)
 """The tasks of people: to act in homes, or to judge films."""
@@ -44,6 +46,7 @@ class Question:
         choices: the possible answers.
         required: whether it must be answered.
         after: one of `AFTER`.
+        correct: the one right answer of a question that tests attention; None of others.
     """
 
     name: str
@@ -55,6 +58,7 @@ class Question:
     choices: tuple[str, ...] = ()
     required: bool = True
     after: str = "trial"
+    correct: int | str | None = None
 
     def fault(self, answer: object) -> str:
         """Return the fault of an answer; "" if there is none."""
@@ -149,11 +153,13 @@ class Limits:
 
     Attributes:
         minutes: of a trial.
+        least_seconds: of a trial; one that took less is flagged at the desk.
         idle_hours: without a sign of a person, who then counts as having left.
     """
 
     minutes: float = 20.0
     idle_hours: float = 24.0
+    least_seconds: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -181,6 +187,7 @@ class Study:
         questions: after trials.
         exit: at the end.
         text: the file.
+        recruitment: the platform by which its people come; None for none.
     """
 
     name: str
@@ -203,6 +210,7 @@ class Study:
     questions: tuple[Question, ...]
     exit: tuple[Question, ...]
     text: str
+    recruitment: Recruitment | None = None
 
     @cached_property
     def digest(self) -> str:

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from hearth.schemas.text_decoding import decode
 from hearth.schemas.yaml_fields import Faults, ReadValue, fields, one_of, reads
 from hearth.storage.input_files import read_input
 from hearth.studies.assignment import assignment, balanced, imbalances
+from hearth.studies.recruitment import Recruitment, is_completion, platforms
 from hearth.studies.study import (
     AFTER,
     EPISODES,
@@ -71,6 +73,7 @@ STUDY_KEYS: dict[str, ReadValue] = {
     "people": whole(1, MOST_PEOPLE), "tutorial": list, "practice": whole(0, 10), "tasks": _mapping, "films": _mapping,
     "interface": one_of("symbolic", "visual"), "conditions": list, "repeats": whole(1, 1000),
     "at_least": whole(0, 1000), "limits": _mapping, "alone": name, "questions": list, "exit": list,
+    "recruitment": _mapping,
 }  # fmt: skip
 NEEDED = ("name", "title", "room", "seed", "people", "consent", "conditions")
 
@@ -79,12 +82,17 @@ TASK_KEYS: dict[str, ReadValue] = {"challenge": one_of("wah", "owah"), "split": 
 FILM_KEYS: dict[str, ReadValue] = {"of": one_of(*SOURCES), "study": name, "bands": list, "each": whole(1, 1000),
                                   "shown": one_of(*SHOWN)}  # fmt: skip
 BAND_KEYS: dict[str, ReadValue] = {"name": name, "title": text, "from": share, "to": share}
-LIMIT_KEYS: dict[str, ReadValue] = {"minutes": hours, "idle_hours": hours}
+LIMIT_KEYS: dict[str, ReadValue] = {"minutes": hours, "idle_hours": hours, "least_seconds": hours}
+RECRUITMENT_KEYS: dict[str, ReadValue] = {
+    "platform": one_of(*platforms()),
+    "completion": reads("an https address; {person} and {code} are filled in", is_completion, then=str),
+}
 CONDITION_KEYS: dict[str, ReadValue] = {
     "name": name, "title": text, "helper": text, "goal": text, "actor": one_of("person", "agent"),
 }  # fmt: skip
 QUESTION_KEYS: dict[str, ReadValue] = {
     "name": name, "text": text, "scale": _mapping, "choices": list, "required": yes, "after": one_of(*AFTER),
+    "correct": reads("a number or a choice", lambda it: isinstance(it, str | located_yaml.Number)),
 }  # fmt: skip
 
 
@@ -138,13 +146,16 @@ def _study(top: dict[str, Any], tree: Any, faults: Faults, content: str) -> Stud
     _distinct([each.name for each in (*questions, *at_end)], "questions", tree, faults)
     pages = [fields(each, PAGE_KEYS, "a page", faults, ("title", "text")) for each in top.get("tutorial", ())]
     limits = fields(top["limits"], LIMIT_KEYS, "the limits", faults) if "limits" in top else {}
+    recruited = None
+    if "recruitment" in top:
+        recruited = fields(top["recruitment"], RECRUITMENT_KEYS, "`recruitment`", faults, ("platform",))
     if faults:
         return None
     return Study(
         top["name"], top["title"], top.get("source", ""), room, top["seed"], top["people"], top["consent"],
         tuple(Page(**page) for page in pages), top.get("practice", 0), tasks, films, top.get("interface", "symbolic"),
         tuple(conditions), top.get("repeats", 1), top.get("at_least", 0), Limits(**limits), top.get("alone", ""),
-        tuple(questions), tuple(at_end), content,
+        tuple(questions), tuple(at_end), content, None if recruited is None else Recruitment(**recruited),
     )  # fmt: skip
 
 
@@ -208,6 +219,20 @@ def reads_plans(helper: str) -> bool:
 
 
 def _question(entry: Any, faults: Faults) -> Question:
+    """Return a question; a right answer must be one of those that it can have."""
+    made = _plain_question(entry, faults)
+    if not isinstance(entry, located_yaml.Mapping) or "correct" not in entry:
+        return made
+    given = entry["correct"]
+    right = int(given) if isinstance(given, located_yaml.Number) and float(given).is_integer() else given
+    if made.kind == "text" or made.fault(right):
+        remedy = f"{made.low} to {made.high}" if made.kind == "scale" else "one of `choices`"
+        faults.add(Code.BAD_ARGUMENT, "`correct` is no answer to the question", entry.at("correct"), remedy)
+        return made
+    return replace(made, correct=right if isinstance(right, int) else str(right))
+
+
+def _plain_question(entry: Any, faults: Faults) -> Question:
     found = fields(entry, QUESTION_KEYS, "a question", faults, ("name", "text"))
     line = located_yaml.line_of(entry)
     plain: dict[str, Any] = {key: found[key] for key in ("required", "after") if key in found}

@@ -155,9 +155,14 @@ class Conduct:
             return self.study.exit
         return self.study.asked(self.condition(standing)) if standing.stage == QUESTIONS else ()
 
-    def consent(self, person: str) -> Standing:
-        """Record that a person agrees to take part."""
-        return self._go_on(person, CONSENT, "consented", {})
+    def consent(self, person: str, came: Mapping[str, str] | None = None) -> Standing:
+        """Record that a person agrees to take part.
+
+        Args:
+            person: who.
+            came: what the link of a platform said that the person came by.
+        """
+        return self._go_on(person, CONSENT, "consented", {"came": dict(came)} if came else {})
 
     def read(self, person: str) -> Standing:
         """Record that a person has read the tutorial."""

@@ -15,6 +15,7 @@ class ParticipantRow(TypedDict):
     seconds: Annotated[float, "of all trials"]
     left: Annotated[str, "why the person left; empty if not"]
     began: Annotated[float, "when the person joined, in seconds since 1970, UTC; 0 of simulated people"]
+    flags: Annotated[list[str], "signs of little care, such as `attention`; reports count the person all the same"]
     ended: Annotated[float | None, "when the person finished or left, in the same seconds; null of a person under way"]
 
 

@@ -19,6 +19,7 @@ from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
 from hearth.studies.events import Event
 from hearth.studies.films_to_judge import JudgedFilm, read_films
+from hearth.studies.participant_flags import came, flags
 from hearth.studies.study_folder import FILMS, Collected
 from hearth.studies.study_progress import DONE, LEFT, Standing
 from hearth.studies.study_trials import record_of, tasks_of
@@ -98,6 +99,11 @@ class Rows:
         participant = self.codes[standing.person]
         return {"study": self.study.name, "participant": participant, "simulated": self.collected.simulated}
 
+    def platform_ids(self, person: str) -> list[str]:
+        """Return the ids at the platform of all people but one."""
+        others = (came(each) for each in self.standings if each.person != person)
+        return [found["person"] for found in others if "person" in found]
+
     def participants(self) -> Iterator[Mapping[str, Any]]:
         """Yield a row for everybody."""
         for standing in self.standings:
@@ -110,6 +116,7 @@ class Rows:
                 "trials": len(did),
                 "seconds": sum(each.data["seconds"] for each in did),
                 "left": left[0] if left else "",
+                "flags": list(flags(self.study, standing, self.platform_ids(standing.person))),
                 "began": self.collected.conduct.joined_at(standing.person),
                 "ended": standing.events[-1].at if standing.stage in (DONE, LEFT) else None,
             }

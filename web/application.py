@@ -1,7 +1,5 @@
 """The server as one ASGI application: rooms, start page, desk, files, and the checks on every request."""
 
-import asyncio
-import errno
 import hmac
 import logging
 from collections.abc import Callable, Collection, Mapping, Sequence
@@ -11,23 +9,28 @@ from typing import Any
 from urllib.parse import parse_qsl
 
 import jinja2
-from sqlalchemy.exc import DBAPIError, IntegrityError, OperationalError
+from sqlalchemy.exc import DBAPIError, IntegrityError
 from starlette.applications import Starlette
+from starlette.datastructures import MutableHeaders
 from starlette.exceptions import HTTPException
-from starlette.requests import ClientDisconnect, HTTPConnection, Request
+from starlette.middleware.gzip import GZipMiddleware
+from starlette.requests import HTTPConnection, Request
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 from starlette.routing import BaseRoute, Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.web import deadlines, desk_access, sessions, start_pages
+from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
-from hearth.web.limits import MOST_FIELDS, QUIET_SECONDS, Rate, usual_rates
+from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
+from hearth.web.phrases import refused, say
+from hearth.web.request_body import body_of
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
@@ -44,9 +47,6 @@ LOG = logging.getLogger("uvicorn.error")
 
 TRY_LATER = 1013
 """The code with which a socket is closed that a busy server can't serve."""
-
-NO_MORE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Numbers of the errors of a full disk."""
 
 
 def application(
@@ -82,14 +82,31 @@ def application(
     for room in rooms:
         for prefix, addresses in ((f"/{room.name}", room.addresses), (f"/desk/{room.name}", _for_desk(room.desk))):
             routes += [_route(web, address, prefix) for address in addresses]
-    routes.append(Mount("/static", StaticFiles(directory=HERE / "static")))
-    routes.append(Mount("/fetched", _Fetched(directory=FETCHED, check_dir=False)))
+    routes.append(Mount("/static", _packed(StaticFiles(directory=HERE / "static"))))
+    routes.append(Mount("/fetched", _packed(_Fetched(directory=FETCHED, check_dir=False))))
     handlers: dict[Any, Any] = {
         kind: partial(_refused, web) for kind in (WebError, HearthError, HTTPException, DBAPIError, OSError, Exception)
     }
     made = Starlette(routes=routes, exception_handlers=handlers)
     made.router.redirect_slashes = False  # it would send people to the `Host` that they asked for
     return Security(made, hosts)
+
+
+def _packed(files: StaticFiles) -> ASGIApp:
+    """Return files that are sent compressed, and that browsers keep: they ask whether a file is still the same.
+
+    Pages are not compressed: the length of a compressed page betrays its secrets to a person who writes a part of it.
+    """
+
+    async def kept(scope: Scope, receive: Receive, send: Send) -> None:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                MutableHeaders(scope=message)["Cache-Control"] = "no-cache"
+            await send(message)
+
+        await files(scope, receive, sent)
+
+    return GZipMiddleware(kept, minimum_size=1_000, compresslevel=6)
 
 
 class _Fetched(StaticFiles):
@@ -108,6 +125,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    made.globals["say"], made.globals["refused"] = say, refused
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made
@@ -132,7 +150,7 @@ def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
         session = await in_thread(sessions.find, web.store, token_of(request))
         sender = session.id if session else sender_of(request)
         web.rates["request"].check(sender, request.url.path)
-        body = await _body(request, address.most)
+        body = await body_of(request, address.most)
         return await in_thread(_answer, web, address, request, session, body, within=within)
 
     return endpoint
@@ -187,29 +205,13 @@ def _is_researcher(web: Web, request: Request) -> bool:
     return hmac.compare_digest(sessions.digest(token), web.desk)
 
 
-async def _body(request: Request, most: int) -> bytes:
-    parts, size = [], 0
-    try:
-        async with asyncio.timeout(QUIET_SECONDS):
-            async for part in request.stream():
-                size += len(part)
-                if size > most:
-                    raise WebError(Code.FILE_TOO_LARGE, "body", f"at most {most} bytes", "more")
-                parts.append(part)
-    except ClientDisconnect:
-        raise WebError(Code.DISCONNECTED, "body", "the whole of it", "a part") from None
-    except TimeoutError:
-        raise WebError(Code.TIMED_OUT, "body", f"the whole of it within {QUIET_SECONDS:g} s", "a part") from None
-    return b"".join(parts)
-
-
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
     deadlines.begin(deadlines.OPENS)
     try:
         session = await in_thread(sessions.find, web.store, token_of(socket))
     except HearthError as error:
         await socket.accept()
-        await socket.send_json({"type": "error", **_fault_of(error).as_json()})
+        await socket.send_json({"type": "error", **fault_of(error).as_json()})
         await socket.close(TRY_LATER)
         return
     await socket.accept()
@@ -225,27 +227,9 @@ async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
     await address.handler(Link(web, session, socket))
 
 
-def _fault_of(error: Exception) -> WebError:
-    if isinstance(error, WebError):
-        return error
-    if isinstance(error, HTTPException):
-        code = Code.UNKNOWN_ID if error.status_code == 404 else Code.BAD_ARGUMENT
-        return WebError(code, "address", "an address of this server, and a method it has", error.detail)
-    if isinstance(error, HearthError):
-        fault = error.diagnostics[0]
-        return WebError(fault.code, fault.place(), fault.suggestion, fault.message)
-    if isinstance(error, OSError) and error.errno in NO_MORE:
-        return WebError(Code.UNWRITABLE, "server", "room on its disk", "a full disk")
-    if isinstance(error, OSError) and error.errno in (errno.EMFILE, errno.ENFILE):
-        return WebError(Code.TIMED_OUT, "server", "fewer requests at once", "as many open files as it may have")
-    if isinstance(error, OperationalError):
-        return WebError(Code.MISSING_FILE, "store", "a store that can be used", "one that can't be, see the log")
-    return WebError(Code.INTERNAL_ERROR, "server", "an answer", "an error in Hearth, not in your request")
-
-
 async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     """Return the answer to a request that is refused: a page for browsers, else JSON."""
-    fault = _fault_of(error)
+    fault = fault_of(error)
     if isinstance(error, OSError) and fault.code is Code.INTERNAL_ERROR:
         raise error  # it is ours, and the log is to say where
     if isinstance(error, DBAPIError):  # its text can have what somebody wrote
@@ -256,6 +240,11 @@ async def _refused(web: Web, asked: Request, error: Exception) -> Response:
     return answer
 
 
+def _address(asked: Request) -> str:
+    """Return the requested address with its query, such as the ids of a platform."""
+    return asked.url.path + (f"?{asked.url.query}" if asked.url.query and asked.method == "GET" else "")
+
+
 def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Response:
     status = error.status_code if isinstance(error, HTTPException) else fault.status
     if not by_browser(asked):
@@ -263,6 +252,8 @@ def _refusal(web: Web, asked: Request, error: Exception, fault: WebError) -> Res
     if fault.instead:
         return RedirectResponse(fault.instead, 303)
     begins = fault.code is Code.NO_SESSION
-    back, lost = (asked.url.path if begins else "/"), begins and bool(token_of(asked))
-    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost)
-    return HTMLResponse(page, status)
+    back, lost = (_address(asked) if begins else "/"), begins and bool(token_of(asked))
+    desk = asked.url.path.startswith("/desk")
+    page = render(web, "fault.html", None, fault=fault, begins=begins, back=back, lost=lost, desk=desk)
+    comes = begins and not lost and asked.method in ("GET", "HEAD")  # a newcomer has done nothing wrong
+    return HTMLResponse(page, 200 if comes else status)

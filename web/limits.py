@@ -34,9 +34,16 @@ It is looked at every second, so that it ends within ten.
 MOST_CONNECTIONS = 4_000
 """Connections of a process at once, where the limit of open files allows as many."""
 
-RATES = {"request": (40, 200), "begin": (1, 30), "token": (0.5, 10), "run": (1, 5)}
+RATES = {
+    "request": (40, 200),
+    "begin": (1, 30),
+    "token": (0.5, 10),
+    "run": (1, 5),
+    "create": (50, 400),
+    "world": (2_000, 4_000),
+}
 """Requests a second and at once: all of a session; new sessions and tokens that are tried, of an address; runs of a
-program, of a session."""
+program, of a session; of `serve --text` and `mcp`, new worlds of an address, and requests of a world."""
 
 MOST_SENDERS = 10_000
 """Senders that are remembered; the one that was silent longest is forgotten first."""

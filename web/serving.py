@@ -30,19 +30,19 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def listening(port: int) -> socket.socket:
-    """Return a socket on 127.0.0.1 that listens; on any free port if `port` is 0.
+def listening(port: int, host: str = "127.0.0.1") -> socket.socket:
+    """Return a socket that listens on an address of this machine; on any free port if `port` is 0.
 
     Raises:
-        HearthError: UNWRITABLE, if the port is taken.
+        HearthError: UNWRITABLE, if the port is taken, or the machine does not have the address.
     """
-    made = socket.socket()
+    made = socket.socket(socket.AF_INET6 if ":" in host else socket.AF_INET)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
-        made.bind(("127.0.0.1", port))
+        made.bind((host, port))
     except OSError as error:
         made.close()
-        message = f"port {port} of 127.0.0.1 can't be used: {str(error.strerror).lower()}"
+        message = f"port {port} of {host} can't be used: {str(error.strerror).lower()}"
         raise HearthError.of(Code.UNWRITABLE, message, suggestion="give another with --port, or 0 for any") from error
     made.listen(KERNEL_QUEUE)
     return made

@@ -6,6 +6,7 @@ from starlette.responses import Response
 
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
+from hearth.web.phrases import script
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.security import own_address, scheme_of
@@ -34,7 +35,7 @@ def _begin(visit: Visit) -> Response:
     if visit.session is None:
         visit.web.rates["begin"].check(_sender(visit), "/begin")
     session = visit.session or sessions.start(visit.web.store)
-    wanted = visit.field("to", 300)
+    wanted = visit.field("to", 1_000)
     return _entered(visit, visit.go(own_address(wanted)), session.token)
 
 
@@ -89,6 +90,11 @@ def _privacy(visit: Visit) -> Response:
     return visit.page("privacy.html")
 
 
+def _phrases(visit: Visit) -> Response:
+    """Return the sentences that scripts say."""
+    return Response(script(), media_type="text/javascript")
+
+
 def _door(visit: Visit) -> Response:
     return visit.page("desk_door.html", wrong=visit.fields.get("wrong") == "yes")
 
@@ -133,6 +139,7 @@ ADDRESSES = (
     get(COME, _coming, Who.ANYONE),
     post(COME, _came, Who.ANYONE),
     get("/privacy", _privacy, Who.ANYONE),
+    get("/phrases.js", _phrases, Who.ANYONE),
     get("/mine", _mine),
     post("/mine/delete", _delete),
     get("/desk/enter", _door, Who.ANYONE),

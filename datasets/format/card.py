@@ -8,6 +8,7 @@ import orjson
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from hearth.datasets.format.action_set_tables import tables_of
 from hearth.datasets.format.croissant import SUMMARY
 from hearth.datasets.format.datasheet import datasheet
 from hearth.datasets.format.image_tables import FOLDER as IMAGES
@@ -44,7 +45,7 @@ def card(folder: Path, strength: str, action_set: int = USUAL) -> str:
         version=VERSION,
         action_set=name_of_set(action_set),
         sheet=datasheet(folder, strength),
-        tables=TABLES,
+        tables=tables_of(action_set),
         counts={table: sum(_rows(path) for path in sorted((folder / table).glob("*.parquet"))) for table in TABLES},
         comment_of=comment_of,
         columns=columns,

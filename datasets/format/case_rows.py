@@ -20,10 +20,12 @@ from hearth.grounding.environments.sampling import Environment
 from hearth.schemas.failure_words import sentence
 from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import Change, State
-from hearth.schemas.row_types import DifferenceRow
+from hearth.schemas.row_types import DifferenceRow, HarmRow, LastingRow
 from hearth.schemas.stage_rows import CaseRow, RunRow
 from hearth.schemas.vocabulary import FURTHER_STATES, STATES
 from hearth.simulation.engine import Execution, run
+from hearth.simulation.harm import harm_among
+from hearth.simulation.lasting_changes import Lasting
 from hearth.simulation.rules import RULES
 from hearth.simulation.world.action_set_3_states import is_wide
 from hearth.simulation.world.bits import indices
@@ -154,9 +156,51 @@ def rerun(case: CaseRow, homes: Source) -> Execution:
     return run(start_of(case["environment"], case["home"], homes), program, RULES[case["rules"]])
 
 
+def harm_row(execution: Execution) -> HarmRow:
+    """Return the columns of harm of an execution; they are null where its rules have no consequences."""
+    if not execution.rules.consequences:
+        return {"hazards": None, "irreversible": None, "wasted": None}
+    found = harm_among(execution.worlds)
+    return {
+        "hazards": [
+            {
+                "hazard": each.hazard.name,
+                "severity": each.hazard.severity,
+                "things": list(each.things),
+                "step": each.step,
+                "lasted": each.lasted,
+                "at_end": each.at_end,
+            }
+            for each in found.hazards
+        ],
+        "irreversible": list(map(_lasting_row, found.irreversible)),
+        "wasted": list(map(_lasting_row, found.wasted)),
+    }
+
+
+HARM = tuple(HarmRow.__annotations__)
+"""The columns of harm."""
+
+
+def _lasting_row(lasting: Lasting) -> LastingRow:
+    return {"thing": lasting.thing, "state": lasting.state, "step": lasting.step}
+
+
 def difference_on_replay(case: CaseRow, homes: Source) -> str:
-    """Return the difference between a case's replay and its row; empty if they agree."""
+    """Return the difference between a case's replay and its row; empty if they agree.
+
+    A row with the columns of harm is compared in these, too.
+    """
     execution = rerun(case, homes)
+    if difference := difference_from(execution, case):
+        return difference
+    harm: Mapping[str, object] = harm_row(execution)
+    wrong = [name for name in HARM if name in case and case[name] != harm[name]]  # type: ignore[literal-required]
+    return f"it has other {wrong[0]} than the row says" if wrong else ""
+
+
+def difference_from(execution: Execution, case: CaseRow) -> str:
+    """Return the difference between an execution and the row of a case; empty if they agree."""
     if (execution.failure and failure_row(execution.failure)) != case["failure"]:
         expected = case["failure"]["code"] if case["failure"] else "no failure"
         found = sentence(execution.failure) if execution.failure else "it runs to its end"

@@ -10,6 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from hearth.datasets.format.action_set_tables import tables_of
+from hearth.kb.action_sets import LATEST, USUAL
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import TABLES, comment_of, nested
@@ -41,10 +43,10 @@ def statements(root: str = "") -> str:
     return text.format(folder=quoted(root) if root else _BESIDE)
 
 
-def comments() -> Iterator[str]:
+def comments(action_set: int = LATEST) -> Iterator[str]:
     """Statements that comment views and macros; a column's comment has those of its nested fields, one a line."""
     yield from (files("hearth.datasets.format") / "comments.sql").read_text("utf-8").splitlines(keepends=True)
-    for table, schema in TABLES.items():
+    for table, schema in tables_of(action_set).items():
         yield f"COMMENT ON VIEW {table} IS {quoted(comment_of(schema))};\n"
         for column in schema:
             _, *within = nested(column)
@@ -52,9 +54,9 @@ def comments() -> Iterator[str]:
             yield f"COMMENT ON COLUMN {table}.{column.name} IS {quoted(chr(10).join(lines))};\n"
 
 
-def published() -> str:
-    """Return the SQL of a dataset's catalog."""
-    return "\n".join((statements(), "".join(comments())))
+def published(action_set: int = USUAL) -> str:
+    """Return the SQL of the catalog of a dataset of an action set."""
+    return "\n".join((statements(), "".join(comments(action_set))))
 
 
 def describe(connection: Any) -> None:
@@ -94,12 +96,12 @@ def reading(table: str, format: int = FORMAT, root: str = "") -> str:
     return f"({query.format(**{name: _reading(name, root) for name in TABLES})})" if query else _reading(table, root)
 
 
-def write_catalog(folder: Path) -> None:
+def write_catalog(folder: Path, action_set: int = USUAL) -> None:
     """Write `catalog.duckdb` and its SQL, with relative paths that stay valid when the folder is moved."""
-    write_bytes(folder / SQL, published().encode())
+    write_bytes(folder / SQL, published(action_set).encode())
     with replacing(folder / CATALOG) as temporary:
         temporary.unlink(missing_ok=True)
-        make_catalog(temporary, folder, published())
+        make_catalog(temporary, folder, published(action_set))
 
 
 def make_catalog(path: Path, folder: Path, sql: str) -> None:

@@ -6,7 +6,9 @@ from typing import Any
 
 import pyarrow as pa
 
+from hearth.datasets.format.action_set_tables import tables_of
 from hearth.datasets.format.datasheet import datasheet
+from hearth.kb.action_sets import USUAL
 from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.program import MOST_OBJECTS
 from hearth.schemas.tables import KEYS, REFERENCES, TABLES, comment_of
@@ -20,12 +22,12 @@ PARQUET = "application/x-parquet"
 LICENSE = "https://spdx.org/licenses/MIT.html"
 
 
-def write_croissant(folder: Path, strength: str = MILD) -> None:
+def write_croissant(folder: Path, strength: str = MILD, action_set: int = USUAL) -> None:
     """Write the description of a dataset's folder."""
-    write_json(folder / NAME, describe(folder, strength))
+    write_json(folder / NAME, describe(folder, strength, action_set))
 
 
-def describe(folder: Path, strength: str) -> dict[str, Any]:
+def describe(folder: Path, strength: str, action_set: int = USUAL) -> dict[str, Any]:
     """Return the description as JSON-LD.
 
     Every Parquet file with its hash, every table with its key and all its columns.
@@ -53,7 +55,7 @@ def describe(folder: Path, strength: str) -> dict[str, Any]:
         "version": VERSION,
         "datePublished": RELEASED,
         "distribution": [file for table in TABLES for file in (_file_set(table), *_parts(folder, table))],
-        "recordSet": [_records(table) for table in TABLES],
+        "recordSet": [_records(table, schema) for table, schema in tables_of(action_set).items()],
     }
 
 
@@ -80,11 +82,9 @@ def _set(table: str) -> str:
     return f"{table}-files"
 
 
-def _records(table: str) -> dict[str, Any]:
-    keys = [
-        {"@id": f"{table}/{column}"} for column in KEYS[table] if not pa.types.is_list(TABLES[table].field(column).type)
-    ]
-    fields = [_field(table, column, column.name) for column in TABLES[table]]
+def _records(table: str, schema: pa.Schema) -> dict[str, Any]:
+    keys = [{"@id": f"{table}/{column}"} for column in KEYS[table] if not pa.types.is_list(schema.field(column).type)]
+    fields = [_field(table, column, column.name) for column in schema]
     return {"@type": "cr:RecordSet", "@id": table, "name": table, "key": keys, "field": fields}
 
 

@@ -34,7 +34,7 @@ ENTRY_POINTS = {
     ),
     "Agents": ("hearth:Env", "hearth:Env.step", "hearth:Env.observe", "hearth:Env.legal"),
     "Environments of learning libraries": (
-        "hearth:TextHome", "hearth:TextHomes",
+        "hearth:TextHome", "hearth:TextHomes", "hearth:TextEpisode",
         "hearth.envs.gymnasium_env:HomeEnv", "hearth.envs.pettingzoo_env:ParallelHome",
     ),
     "Language models": ("hearth:Endpoint", "hearth:run_tasks", "hearth.simulation.actions.legal:Legal.grammar"),

@@ -12,10 +12,10 @@ ROOT = Path(__file__).resolve().parents[2]
 def tables() -> str:
     """The published tables with their keys, columns and nested fields; the other views; the macros."""
     from hearth.datasets.format.card import columns
-    from hearth.schemas.tables import KEYS, TABLES, comment_of
+    from hearth.schemas.tables import CONSEQUENCE_TABLES, KEYS, comment_of
 
     lines = ["# Tables", "", *TABLES_ABOUT, "", "![Every table, its key and what it refers to](pictures/tables.svg)"]
-    for table, schema in TABLES.items():
+    for table, schema in CONSEQUENCE_TABLES.items():
         keys = ", ".join(f"`{name}`" for name in KEYS[table])
         refers = "".join(f" `{own}` refers to `{other}`." for own, other in _references(table).items())
         lines += ["", f"## {table}", "", comment_of(schema), "", f"Key: {keys}.{refers}", "", *columns(schema)]

@@ -155,7 +155,9 @@ def _candidates(
 ) -> list[int]:
     """Return indices of the home's own things that could be the object: unused, affording its uses, in the room."""
     home = partial.base.home
-    able = reduce(and_, (home.able(action, position) for action, position in requirements.uses[key]), home.everything)
+    able = reduce(
+        and_, (home.able(action, position) for action, position in requirements.uses.get(key, ())), home.everything
+    )
     ids, rooms, start = home.ids, partial.base.room, partial.base.start
     closed = home.states[0] & ~home.rooms
     put_back = _put_back(requirements, key)
@@ -172,7 +174,7 @@ def _candidates(
 
 def _put_back(requirements: Requirements, key: Key) -> bool:
     """Return whether the program puts an object back where it came from, and so needs it to come from somewhere."""
-    return any(action == "PutObjBack" for action, _ in requirements.uses[key])
+    return any(action == "PutObjBack" for action, _ in requirements.uses.get(key, ()))
 
 
 def _linked(partial: PartialEnvironment, i: int, condition: Condition) -> bool:

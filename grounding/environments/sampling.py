@@ -45,6 +45,7 @@ class Environment:
         conditions: those given, and those abduced while sampling.
         nodes, placed, removed, states: what differs from the base; states are those of the nodes named, all of them.
         movable: the random things among the nodes, and where they are.
+        places: nodes of the objects that conditions name and the program does not.
     """
 
     base: Home
@@ -58,6 +59,7 @@ class Environment:
     states: tuple[tuple[int, tuple[str, ...]], ...]
     movable: tuple[Movable, ...] = ()
     left_out: tuple[int, ...] = ()
+    places: tuple[tuple[Key, int], ...] = ()
 
     __repr__ = brief
 
@@ -85,6 +87,9 @@ def of_partial(
         tuple(sorted(partial.states.items())),
         tuple(partial.movable),
         partial.base.removed,
+        tuple(
+            (key, node) for key, node in partial.binding.items() if key not in {ref.key for ref in program.objects()}
+        ),
     )
 
 
@@ -160,7 +165,7 @@ def sample(
     for attempt in range(TRIES):
         environment = draw(program, base, found, seed, record_id, attempt, size, rules)
         execution = run(environment.world, environment.program, rules)
-        missing = unmet(environment.conditions, environment.world, _nodes(environment.program))
+        missing = unmet(environment.conditions, environment.world, _nodes(environment))
         fault = unsound(environment.world)
         if not missing and fault is None and (execution.failure is None or not must_run):
             return environment, execution
@@ -188,8 +193,9 @@ def unplaceable(program: Program, base: Base) -> Failure | None:
     return None
 
 
-def _nodes(program: Program) -> dict[Key, int]:
-    return {ref.key: ref.node for ref in program.objects() if ref.node is not None}
+def _nodes(environment: Environment) -> dict[Key, int]:
+    bound = {ref.key: ref.node for ref in environment.program.objects() if ref.node is not None}
+    return {**bound, **dict(environment.places)}
 
 
 def draw(
@@ -252,7 +258,7 @@ def _with_abduced(
     """Return the conditions with the abduced precondition of the failed run."""
     failure = execution.failure
     assert failure is not None
-    keys = {node: key for key, node in _nodes(environment.program).items()}
+    keys = {node: key for key, node in _nodes(environment).items()}
     context = StartContext(
         environment.program, failure.tick, failure, execution.final, base.knowledge, environment.world, keys
     )

@@ -34,11 +34,13 @@ class Layout:
         plan: the plan.
         shell: its walls, tiles, openings.
         things: all but rooms and the character: the shell's things, then the furniture with the things on and in it.
+        person: the character, where a file says where it stands.
     """
 
     plan: Plan
     shell: Shell
     things: tuple[Thing, ...]
+    person: Thing | None = None
 
     @cached_property
     def floor(self) -> Floor:
@@ -47,8 +49,8 @@ class Layout:
 
     @cached_property
     def character(self) -> Thing:
-        """The character: standing in its room, at the point of the main region with most space around it."""
-        return _character(self)
+        """The character: as a file says, or in its room, where the main region has the most space around it."""
+        return self.person or _character(self)
 
     def rooms(self) -> Iterator[Thing]:
         """Yield the rooms as boxes."""
@@ -106,12 +108,12 @@ def _furnished(plan: Plan, room: Room, built: Shell, knowledge: Knowledge, fault
     yield from _implied(plan, room, built, furnished, knowledge)
     seats = [placed.thing for placed in furnished.placed if placed.thing.class_name in SEATS]
     for placed in furnished.placed:
-        thing = _standing(placed.thing, built, furnished)
+        thing = standing(placed.thing, built)
         yield thing
         yield from contents(thing, placed.piece, knowledge, faults, seats)
 
 
-def _standing(thing: Thing, built: Shell, room: Furnishing) -> Thing:
+def standing(thing: Thing, built: Shell) -> Thing:
     """Return the same thing, with the floor tile or wall panel it is on."""
     x, z = footprint(thing.box).center
     if thing.mount in ("floor", "flat"):
@@ -151,7 +153,7 @@ def _implied(plan: Plan, room: Room, built: Shell, furnished: Furnishing, knowle
     if "light" not in classes:
         switch = _switch(room, built, knowledge)
         if switch is not None:
-            yield _standing(switch, built, furnished)
+            yield standing(switch, built)
 
 
 def _switch(room: Room, built: Shell, knowledge: Knowledge) -> Thing | None:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hearth.homes.from_graph.graph_layout import lay_out
 from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
-from hearth.homes.geometry import Rect, bottom, box_over, footprint, top
+from hearth.homes.geometry import bottom, footprint, top
 from hearth.homes.lint import CHECKS, NEEDS_STATES, View
 from hearth.homes.object_shapes import Form, form
 from hearth.homes.relations import close, facing
@@ -49,6 +49,30 @@ def usual_place(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tupl
             if other.class_name == place.destination and other.id != node.id:
                 return ("INSIDE" if other.category == ROOM_CATEGORY else relation), other
     return None
+
+
+def usual_relation(class_name: str, holder: str, knowledge: Knowledge) -> str:
+    """Return whether a thing of a class is usually ON or INSIDE a holder of another class."""
+    for place in knowledge.placements(class_name):
+        if place.destination == holder and place.relation in ("ON", "IN"):
+            return "ON" if place.relation == "ON" else "INSIDE"
+    return "INSIDE" if knowledge.has(holder, "CAN_OPEN") else "ON"
+
+
+def states_with(states: Sequence[str], class_name: str, knowledge: Knowledge) -> list[str]:
+    """Return some states of a class, and for the rest its usual ones; [] where it can be in none of them."""
+    usual = knowledge.default_states(class_name)
+    own = [state for state in states if _can_be(state, class_name, usual, knowledge)]
+    groups = {knowledge.group_of(state) for state in own}
+    return [*own, *(state for state in usual if knowledge.group_of(state) not in groups)] if own else []
+
+
+def _can_be(state: str, class_name: str, usual: Sequence[str], knowledge: Knowledge) -> bool:
+    """Return whether a class can be in a state: a property says so, or it is usually in a state of that group."""
+    needs = {"OPEN": "CAN_OPEN", "CLOSED": "CAN_OPEN", "ON": "HAS_SWITCH", "OFF": "HAS_SWITCH"}.get(state)
+    if needs:
+        return knowledge.has(class_name, needs)
+    return knowledge.group_of(state) in {knowledge.group_of(each) for each in usual}
 
 
 def room_above(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
@@ -203,31 +227,3 @@ def nearness(graph: EnvironmentGraph, knowledge: Knowledge) -> list[Edge]:
     had = {(edge.source, edge.relation, edge.target) for edge in graph.edges}
     edges = (Edge(things[one].line, relation, things[other].line) for relation, (one, other) in pairs)
     return sorted({edge for edge in edges if tuple(edge) not in had})
-
-
-def room_boxes(graph: EnvironmentGraph) -> dict[int, Box] | None:
-    """Return boxes of the rooms around the things in each; None where a room is empty or two of them overlap."""
-    rooms = [node.id for node in graph.nodes if node.category == ROOM_CATEGORY]
-    held: dict[int, list[Box]] = {room: [] for room in rooms}
-    boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
-    for edge in graph.edges:
-        if edge.relation == "INSIDE" and edge.target in held and edge.source in boxes:
-            held[edge.target].append(boxes[edge.source])
-    if not all(held.values()):
-        return None
-    floor = min(bottom(box) for each in held.values() for box in each)
-    found = {room: Rect.over(map(footprint, each)).inset(-MARGIN) for room, each in held.items()}
-    if any(found[one].overlap(found[other]) > 0 for one, other in _pairs(rooms)):
-        return None
-    return {room: box_over(rect, floor, floor + HEIGHT) for room, rect in found.items()}
-
-
-MARGIN = 0.6
-"""Metres of floor around the things of a room whose own size is not known."""
-
-HEIGHT = 2.6
-"""Metres from floor to ceiling of such a room."""
-
-
-def _pairs(rooms: Sequence[int]) -> Iterator[tuple[int, int]]:
-    return ((one, other) for number, one in enumerate(rooms) for other in rooms[:number])

@@ -108,7 +108,7 @@ def _scale(places: Sequence[Vector]) -> float:
 def entry_of(entity: Entity, class_name: str, shape: Shape, units: Units) -> Entry:
     """Return an entry with its place, size, rotation and states."""
     place, size = _place(entity, shape), _size(entity, shape)
-    found = Entry(entity, class_name, states=tuple(dict.fromkeys(_states(entity, shape))))
+    found = Entry(entity, class_name, states=tuple(dict.fromkeys(states_of(entity, shape))))
     turn = next(iter(values_of(entity, shape.fields["rotation"])), None)
     if place is not None:
         place = _times(vectors.upright(place, units.up), units.scale)
@@ -154,7 +154,7 @@ def _size(entity: Entity, shape: Shape) -> Vector | None:
     return next((size for size in found if size is not None and min(size) >= 0), None)
 
 
-def _states(entity: Entity, shape: Shape) -> Iterator[str]:
+def states_of(entity: Entity, shape: Shape) -> Iterator[str]:
     """Yield the states that an entry's flags and words mean."""
     for key, value in entity.fields.items():
         name = next((flag for flag in shape.flags if key == flag or key.endswith("states" + flag)), "")

@@ -31,13 +31,14 @@ class Ties(NamedTuple):
     unknown_words: tuple[tuple[str, str], ...]
     dangling: tuple[tuple[str, str], ...]
     ambiguous: tuple[tuple[str, str], ...] = ()
+    selves: tuple[tuple[str, str], ...] = ()
 
 
 def ties_of(found: Found, shape: Shape) -> Ties:
     """Return the relations of a file.
 
     Returns: those between entries; rooms that are only named, each with the entry in it; words that are no relation of
-        ours; references to no entry; references to one of several entries.
+        ours; references to no entry; references to one of several entries; references of an entry to itself.
     """
     by_key: dict[str, Entity] = {}
     twice: set[str] = set()
@@ -57,7 +58,7 @@ def ties_of(found: Found, shape: Shape) -> Ties:
     for mention in found.mentions:
         if mention.owner is not None and by_key[mention.text] is not mention.owner:
             reader.ties.append(Tie(by_key[mention.text], "", mention.owner))
-    faults = (reader.words, reader.dangling, reader.ambiguous)
+    faults = (reader.words, reader.dangling, reader.ambiguous, reader.selves)
     return Ties(tuple(dict.fromkeys(reader.ties)), tuple(reader.rooms), *map(tuple, faults))
 
 
@@ -77,6 +78,7 @@ class _Reader:
         self.words: list[tuple[str, str]] = []
         self.dangling: list[tuple[str, str]] = []
         self.ambiguous: list[tuple[str, str]] = []
+        self.selves: list[tuple[str, str]] = []
 
     def link(self, link: Link) -> None:
         """Note a relation of a list of relations."""
@@ -118,7 +120,7 @@ class _Reader:
             self._room(entity, text)
         for text in wanted(entity, names["children"]):
             child = None if self._is_ambiguous(entity.path, text) else self.by_key.get(text)
-            if child is not None and child is not entity:
+            if child is not None:
                 self._tie(child, "", entity)
         if entity.owner is not None:
             self._tie(entity, "", entity.owner)
@@ -132,7 +134,7 @@ class _Reader:
         holder = self.by_key.get(text)
         if holder is None:
             self._room(entity, text)
-        elif holder is not entity:
+        else:
             self._tie(entity, relation, holder)
 
     def _phrase(self, relation: str, text: str) -> tuple[str, str]:
@@ -156,13 +158,16 @@ class _Reader:
         if self._is_ambiguous(entity.path, text):
             return
         room = self.by_key.get(text)
-        if room is not None and room is not entity:
+        if room is not None:
             self._tie(entity, "INSIDE", room)
-        elif room is None:
+        else:
             self.rooms.append((entity, text))
 
     def _tie(self, source: Entity, relation: str, target: Entity) -> None:
-        self.ties.append(Tie(source, relation, target))
+        if source is target:
+            self.selves.append((source.path, source.name))
+        else:
+            self.ties.append(Tie(source, relation, target))
 
     def __repr__(self) -> str:
         return f"_Reader({len(self.ties)} ties)"

@@ -11,20 +11,23 @@ from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
 from hearth.interop.scene_graphs import completion
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
-from hearth.interop.scene_graphs.entities import Entity, entities_of
+from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.omnigibson import joined
+from hearth.interop.scene_graphs.room_extents import with_boxes
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.spelling import key_of
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
-from hearth.schemas.vocabulary import CHARACTER_CLASS, FIRST_ADDED_ID, ROOM_CATEGORY
+from hearth.schemas.vocabulary import FIRST_ADDED_ID, ROOM_CATEGORY
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
@@ -44,7 +47,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(data, shape)
+    found = entities_of(joined(data), shape)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
@@ -85,12 +88,14 @@ class _Reading:
     keeps_boxes: bool = False
     notes: list[Filling] = field(default_factory=list)
     left_out: list[Diagnostic] = field(default_factory=list)
+    floors: list[Box] = field(default_factory=list)
 
     def read(self, entities: Sequence[Entity], ties: Ties) -> ReadGraph:
         """Return the home of some entries and their relations."""
         classes = {id(entity): class_of(entity.label, self.shape, self.knowledge) for entity in entities}
         kept = [entity for entity in entities if classes[id(entity)].name]
         self._note_classes(entities, classes)
+        self._name_shared_ids(entities)
         if not kept:
             raise HearthError(self.left_out[:20])
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
@@ -98,6 +103,7 @@ class _Reading:
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
         entries, raised = raised_from_feet(entries, self.knowledge)
         self.note("places at the foot of things, as all stand on one level", raised)
+        self.floors = self._floors(entities, units)
         rooms = self._named_rooms(ties, entries)
         numbers = _numbers([*rooms.values(), *entries])
         edges = self._edges(ties, entries, rooms, numbers)
@@ -110,6 +116,12 @@ class _Reading:
         graph = self.completed(self._singly_held(graph))
         ids = {numbers[id(entry)]: entry.entity.keys[0] for entry in entries if entry.entity.keys}
         return ReadGraph(graph, self.counted(), tuple(self.left_out), ids)
+
+    def _floors(self, entities: Sequence[Entity], units: Units) -> list[Box]:
+        """Return the boxes of the floors that a file has."""
+        found = (entry_of(each, "floor", self.shape, units) for each in entities if key_of(each.label) == "floor")
+        boxes = [Box(floor.place, floor.size) for floor in found if floor.place and floor.size]
+        return [box for box in boxes if min(box.size[::2]) > 0 and max(box.size) <= LONGEST_HOME]
 
     def counted(self) -> tuple[Filling, ...]:
         """Return what was noted, in its order."""
@@ -135,6 +147,16 @@ class _Reading:
         for by, what in CLASSES_BY.items():
             self.note(what, ways.get(by, []))
 
+    def _name_shared_ids(self, entities: Sequence[Entity]) -> None:
+        """Name the entries of a list whose id is that of another entry of the list."""
+        seen: dict[tuple[str, str], str] = {}
+        for entity in entities:
+            for value in values_of(entity, self.shape.fields["id"])[:1]:
+                first = seen.setdefault((entity.path.rpartition("[")[0], str(value)), entity.path)
+                if first != entity.path:
+                    message = f"its id `{str(value)[:60]}` is that of {first}, too"
+                    self._leave(Code.DUPLICATE, message, entity.path, "give each an id of its own")
+
     def _singly_held(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         edges, left = with_single_holders(graph, self.knowledge)
         names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes}
@@ -151,7 +173,10 @@ class _Reading:
             if id(entity) in kept and self.knowledge.is_room(name):
                 found.setdefault(text, Entry(Entity("", (), text, text, {}), name))
             elif id(entity) in kept and class_of(text, self.shape, self.knowledge).by != "building":
-                self._leave(Code.BAD_GRAPH, f"it stands in or on `{text}`, which is nothing in the file", entity.path)
+                rooms = ", ".join(sorted(filter(self.knowledge.is_room, self.knowledge.objects)))
+                message = f"it stands in or on `{text}`, which is nothing in the file and no room of ours"
+                self._leave(Code.UNKNOWN_OBJECT, message, entity.path,
+                            f"`classes:` of a mapping file names one of {rooms}")  # fmt: skip
         self.note("rooms that things only name", list(found))
         if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
             name = completion.room_for([entry.class_name for entry in entries], self.knowledge)
@@ -187,6 +212,8 @@ class _Reading:
         self.note("relations without a counterpart, left out", [word for _, word in ties.unknown_words])
         for path, text in ties.dangling:
             self._leave(Code.BAD_GRAPH, f"a relation names `{text}`, which is nothing in the file", path)
+        for path, text in dict.fromkeys(ties.selves):
+            self._leave(Code.LOOP, f"`{text}` is on or in itself", path, "name another holder, or none")
         for path, text in ties.ambiguous:
             message = f"a relation names `{text}`, and several things are called so"
             self._leave(Code.DUPLICATE, message, path, "give each thing an id of its own")
@@ -196,13 +223,7 @@ class _Reading:
         """Return the relation to a holder; where the file does not say which, that which is usual."""
         if self.knowledge.is_room(other.class_name):
             return "INSIDE"
-        if relation:
-            return relation
-        places = [p for p in self.knowledge.placements(entry.class_name) if p.destination == other.class_name]
-        for place in places:
-            if place.relation in ("ON", "IN"):
-                return "ON" if place.relation == "ON" else "INSIDE"
-        return "INSIDE" if self.knowledge.has(other.class_name, "CAN_OPEN") else "ON"
+        return relation or completion.usual_relation(entry.class_name, other.class_name, self.knowledge)
 
     def _graph(self, entries: Sequence[Entry], numbers: Mapping[int, int], edges: Sequence[Edge]) -> EnvironmentGraph:
         nodes = [self._node(entry, numbers[id(entry)]) for entry in entries]
@@ -211,15 +232,12 @@ class _Reading:
 
     def _node(self, entry: Entry, number: int) -> dict[str, Any]:
         node: dict[str, Any] = {"id": number, "class_name": entry.class_name}
-        known = self.knowledge.objects[entry.class_name]
-        by_default = self.knowledge.default_states(entry.class_name)
-        own = [state for state in entry.states if self._can_be(state, by_default, known.properties)]
-        groups = {self.knowledge.group_of(state) for state in own}
-        if own:
-            node["states"] = [*own, *(state for state in by_default if self.knowledge.group_of(state) not in groups)]
+        states = completion.states_with(entry.states, entry.class_name, self.knowledge)
+        if states:
+            node["states"] = states
         shaped = None if self.knowledge.is_room(entry.class_name) else form(entry.class_name, self.knowledge)
-        size = entry.size or (shaped and shaped.size)
-        if entry.place is not None and size and all(side > 0 for side in size) and self._is_of_a_home(entry, size):
+        size = entry.size if entry.size is not None and min(entry.size) > 0 else shaped and shaped.size
+        if entry.place is not None and size and self._is_of_a_home(entry, size):
             node["bounding_box"] = {"center": list(entry.place), "size": list(size)}
             node["yaw"] = entry.yaw
         return node
@@ -233,19 +251,13 @@ class _Reading:
         self._leave(Code.BAD_GRAPH, message, entry.entity.path, "`scale:` of a mapping file: metres of a unit")
         return False
 
-    def _can_be(self, state: str, by_default: Sequence[str], properties: frozenset[str]) -> bool:
-        """Return whether a class can be in a state: a property says so, or it is usually in a state of that group."""
-        needs = {"OPEN": "CAN_OPEN", "CLOSED": "CAN_OPEN", "ON": "HAS_SWITCH", "OFF": "HAS_SWITCH"}.get(state)
-        if needs:
-            return needs in properties
-        return self.knowledge.group_of(state) in {self.knowledge.group_of(each) for each in by_default}
-
     def _note_units(self, entries: Sequence[Entry], units: Units) -> None:
         placed = [entry for entry in entries if entry.place is not None]
         self.note(f"places, {units.up} upwards ({units.up_reason})", [entry.class_name for entry in placed])
         if units.scale != 1.0:
             self.note(f"places in units of {units.scale:g} m, as they are so far apart", [e.class_name for e in placed])
-        sized = [each.class_name for each in placed if not (each.size or self.knowledge.is_room(each.class_name))]
+        bare = [each for each in placed if each.size is None or min(each.size) <= 0]
+        sized = [each.class_name for each in bare if not self.knowledge.is_room(each.class_name)]
         self.note("sizes from the knowledge", sized)
 
     def completed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
@@ -326,39 +338,10 @@ class _Reading:
         """Return the graph with boxes: the file's, if a person can walk to everything; else those of a layout."""
         if self.keeps_boxes and has_geometry(graph):
             return graph
-        own = self._with_room_boxes(graph)
-        if own is not None:
-            cut = completion.unreachable(own, self.knowledge)
-            if not cut:
-                return own
-            self.note("boxes of the file left out; things that can't be walked to", ["box"] * cut)
-        doors, count = completion.with_doors(completion.without_boxes(graph), _next(graph))
-        self.note("doors from the largest room to the others", ["doorjamb"] * count)
-        made = completion.laid_out(doors, self.file, self.knowledge)
-        self.note("boxes that fit the relations", [node.class_name for node in made.nodes if node.box is not None])
-        return made
-
-    def _with_room_boxes(self, graph: EnvironmentGraph) -> EnvironmentGraph | None:
-        """Return the graph with a box for each room, around its things where the file has none; None without boxes."""
-        rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
-        had = [node for node in graph.nodes if node.box is not None and node.category != ROOM_CATEGORY]
-        if not had:
-            return None
-        graph, placed = completion.boxed_by_holders(graph, self.knowledge)
-        things = [node for node in graph.nodes if node.category != ROOM_CATEGORY and node.class_name != CHARACTER_CLASS]
-        bare = [node.class_name for node in things if node.box is None]
-        if bare:
-            self.note(f"boxes of the file left out, as {bare[0]} and others have none", [n.class_name for n in had])
-            return None
-        self.note("boxes on or in the holder of a thing", placed)
-        if any(room.box is None or min(room.box.size) <= 0 for room in rooms):
-            boxes = completion.room_boxes(graph)
-            if boxes is None:
-                return None
-            self.note("rooms around their things", [room.class_name for room in rooms])
-            nodes = (replace(node, box=boxes[node.id]) if node.id in boxes else node for node in graph.nodes)
-            return replace(graph, nodes=tuple(nodes))
-        return graph
+        found, notes = with_boxes(graph, self.floors, self.file, self.knowledge)
+        for what, examples in notes:
+            self.note(what, examples)
+        return found
 
 
 def _next(graph: EnvironmentGraph) -> int:

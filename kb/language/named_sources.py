@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.noun_phrases import SOURCE, thing_of
-from hearth.schemas.program import Step
+from hearth.schemas.program import Program, Step
 
 _END = re.compile(r"[,.;!]|\s+(?:and|then|to|into|onto|in|on|with|for|using|before|after|while|when|so|if)\b")
 
@@ -28,6 +28,21 @@ def left_out(known: Knowledge, words: str, taken: str, before: Sequence[Step]) -
     return next(
         (said for place, said in sources(known, words.lower()) if there.isdisjoint(known.same_class(place))), ""
     )
+
+
+def sources_of_steps(known: Knowledge, program: Program, lines: Sequence[str]) -> tuple[tuple[int, str], ...]:
+    """Return the steps that take a thing from a place that their line names, each with the class of the place.
+
+    A line that names several places says of none of its steps which is meant.
+    """
+    takes = known.group("takes")
+    found: list[tuple[int, str]] = []
+    for number, step in enumerate(program.steps):
+        at = program.line(number)
+        named = {place for place, _ in sources(known, lines[at - 1].lower())} if 0 < at <= len(lines) else set()
+        if step.action in takes and step.objects and len(named) == 1:
+            found.append((number, named.pop()))
+    return tuple(found)
 
 
 @lru_cache(maxsize=4_096)

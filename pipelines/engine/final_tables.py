@@ -74,9 +74,10 @@ def finish(job: Job, counts: Counts) -> None:
     copy_overlay(job.settings.kb_folder, job.folder)
     copy_homes(job.settings.homes_folder, job.folder)
     strength = strength_used(job)
-    write_card(job.folder, strength, job.settings.action_set or USUAL)
-    write_croissant(job.folder, strength)
-    write_catalog(job.folder)
+    action_set = job.settings.action_set or USUAL
+    write_card(job.folder, strength, action_set)
+    write_croissant(job.folder, strength, action_set)
+    write_catalog(job.folder, action_set)
 
 
 def _versions(job: Job) -> dict[str, str]:

@@ -86,6 +86,7 @@ class Stage:
         share: rows of a part that make a partition, for parts too large to spread over workers; None for all.
         gather: rows up to which parts are gathered in one partition; 0 for one partition a part.
         exchanged: whether the folder is read during a build; it is then written elsewhere and replaced in one step.
+        tables_of: columns by table where they depend on the settings; the tables are always those of `tables`.
 
     Workers find a stage by its module, which must name it `STAGE` and define `process`.
     """
@@ -112,6 +113,7 @@ class Stage:
     share: int | None = None
     gather: int = 0
     exchanged: bool = False
+    tables_of: Callable[[Settings], Mapping[str, pa.Schema]] | None = None
 
     def __reduce__(self) -> tuple[Callable[[str], Stage], tuple[str]]:
         """Pickle a stage as the name of the module that defines it."""
@@ -140,6 +142,11 @@ class Job:
         """Return the folder of the stage."""
         folder = self.settings.folder(self.stage.name)
         return beside(folder) if self.stage.exchanged else folder
+
+    @cached_property
+    def tables(self) -> Mapping[str, pa.Schema]:
+        """Return the columns by table."""
+        return self.stage.tables_of(self.settings) if self.stage.tables_of else self.stage.tables
 
     @cached_property
     def context(self) -> Any:
@@ -175,7 +182,7 @@ Done = tuple[Partition, Counts]
 def run_partition(job: Job, partition: Partition, seen: RecordsSeen) -> Counts:
     """Process one partition and write it."""
     stage = job.stage
-    writer = PartWriter(job.folder, stage.tables, partition.number, job.part_key(partition))
+    writer = PartWriter(job.folder, job.tables, partition.number, job.part_key(partition))
     deadline = Deadline(job.settings.time_limit * stage.time_factor)
     try:
         sink = _Sink(job, partition, writer)
@@ -273,7 +280,7 @@ class _Sink:
     """Counts the outputs of records and writes them in batches."""
 
     def __init__(self, job: Job, partition: Partition, writer: PartWriter) -> None:
-        self.stage, self.number, self.writer = job.stage, partition.number, writer
+        self.stage, self.number, self.writer, self.tables = job.stage, partition.number, writer, job.tables
         self.batch = job.stage.batch(partition)
         self.counts = Counts()
         self._waiting: list[tuple[str, _Outcome]] = []
@@ -334,7 +341,7 @@ class _Sink:
     def _write(self, records: list[tuple[str, _Outcome]]) -> None:
         batches = [
             (table, self._batch(schema, [row for _, outcome in records for to, row in outcome.rows if to == table]))
-            for table, schema in self.stage.tables.items()
+            for table, schema in self.tables.items()
         ]
         for table, batch in batches:
             if len(batch):

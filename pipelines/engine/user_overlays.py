@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hearth.datasets import dataset_homes, dataset_knowledge
-from hearth.kb.action_sets import number_of_set
+from hearth.kb.action_sets import NEW_DATASETS, number_of_set
 from hearth.pipelines.engine.build_context import knowledge_laid_over, knowledge_used
 from hearth.pipelines.engine.settings import Settings
 from hearth.pipelines.engine.stage import Job
@@ -23,6 +23,7 @@ def kept_overlays(settings: Settings, only: str) -> Settings:
     """Return the settings of a stage run alone.
 
     Knowledge that they do not name is `validate`'s, homes are `sample`'s, the action set is that of the stages before.
+    Before `validate` there is none: it begins with that of new datasets.
 
     Raises:
         HearthError: BAD_ARGUMENT, when they name another action set than that of `sample`, whose executions the stage
@@ -50,7 +51,12 @@ def _of_same_set(settings: Settings, only: str) -> Settings:
             remedy = f"leave --action-set out, or run `sample --action-set {settings.action_set}` first"
             raise HearthError.of(Code.BAD_ARGUMENT, message, file=str(manifest.folder), suggestion=remedy)
         return settings if settings.action_set is not None else replace(settings, action_set=made)
-    return settings
+    return of_new_dataset(settings)
+
+
+def of_new_dataset(settings: Settings) -> Settings:
+    """Return the settings of a build of all stages: without an action set they get that of new datasets."""
+    return settings if settings.action_set is not None else replace(settings, action_set=NEW_DATASETS)
 
 
 def overlays(settings: Settings) -> dict[str, Any]:

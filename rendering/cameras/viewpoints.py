@@ -36,20 +36,22 @@ def home_box(graph: EnvironmentGraph) -> Box:
 
 def room_views(graph: EnvironmentGraph, width: int, height: int) -> Mapping[int, tuple[Camera, ...]]:
     """Room id -> its cameras, moved out of furniture."""
-    boxes = [
-        n.box
-        for n in graph.nodes
-        if n.box and n.category not in (ROOM_CATEGORY, "Characters") and min(n.box.size) > 0.1
-    ]
+    boxes = bulky(graph)
     found: dict[int, tuple[Camera, ...]] = {}
     for node in graph.nodes:
         if node.category == ROOM_CATEGORY and node.box:
             cameras = room_cameras(node.box, f"{node.class_name}.{node.id}", width, height)
-            found[node.id] = tuple(_freed(camera, boxes) for camera in cameras)
+            found[node.id] = tuple(freed(camera, boxes) for camera in cameras)
     return found
 
 
-def _freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
+def bulky(graph: EnvironmentGraph) -> list[Box]:
+    """Return the boxes in which no camera can stand."""
+    bodies = (ROOM_CATEGORY, "Characters")
+    return [n.box for n in graph.nodes if n.box and n.category not in bodies and min(n.box.size) > 0.1]
+
+
+def freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
     """Return the camera, moved towards its target until no box contains it."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     way = (target - eye) * (1.0, 0.0, 1.0)

@@ -126,7 +126,11 @@ def trajectory_of(
     variation = variation or replace(PLAIN, seed=seed, hour=hour)
     placed = scattered(home, variation)
     prepared = prepared_scene(placed, knowledge, seed=variation.seed, hour=variation.hour)
-    found = list(_keyframes(execution, placed, prepared, variation))
+    return trajectory_through(prepared, list(_keyframes(execution, placed, prepared, variation)), variation)
+
+
+def trajectory_through(prepared: PreparedScene, found: Sequence[Keyframe], variation: Variation = PLAIN) -> Trajectory:
+    """Return the trajectory through some keyframes, with the things apart that never change between them."""
     static = StaticThings(_static_things([keyframe.scene for keyframe in found]))
     kept = frozenset(static.things)
     return Trajectory(prepared, tuple(_without_static(keyframe, static, kept) for keyframe in found), static, variation)

@@ -152,6 +152,8 @@ def moved(
         now = actor.spot if there == actor.room else None
         spot = next(floor.spots_for(pose.box, front, there, now, others, top, still=_still(step)), None)
         actor = replace(actor, spot=spot or actor.spot, room=there)
+        if gesture_of(step).enters:
+            return replace(actor, spot=(pose.box.center[0], pose.box.center[2]))
     return replace(actor, yaw=_towards(actor.spot, pose.box.center, actor.yaw))
 
 

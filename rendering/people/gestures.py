@@ -12,9 +12,12 @@ class Gesture:
 
     Attributes:
         hand: what the hands do (step_hands_and_gaze.py): `object`, `put`, `pour`, `mouth`, `type`, `read`, `rub`,
-            `push`, `wear`, `wave`, or "" (nothing but carrying).
+            `push`, `wear`, `wave`, `free`, or "" (nothing but carrying).
         grip: form of the hand that touches an object, of `GRIPS`.
-        motion: of the hands while they act: `rub`, `keys`, or "" (none).
+        free: the row of free_gestures.yaml.
+        enters: whether the actor ends in the middle of the object.
+        motion: of the hands while they act: `rub`, `keys`, `beat`, `shake`, `circle`, of the body `hop`, `sway`, or ""
+            (none).
         seconds: for which they act.
         gaze: `object`, `second`, or "" (ahead).
         stride: above 0 if the actor walks there.
@@ -42,6 +45,8 @@ class Gesture:
     moves: float = 0.0
     swings: bool = False
     into: bool = False
+    free: str = ""
+    enters: bool = False
 
 
 LOOK = Gesture()

@@ -8,6 +8,7 @@ import numpy as np
 from hearth.kb.modifiers import value
 from hearth.rendering.people.action_poses import Actor, reachable
 from hearth.rendering.people.body_pose import Hand, Held
+from hearth.rendering.people.free_gestures import free_aims
 from hearth.rendering.people.gestures import Gesture
 from hearth.rendering.people.held_objects import hold_of_node
 from hearth.rendering.people.own_body_targets import PLACE_OF, at_body
@@ -57,6 +58,7 @@ def gesturing(
         "type": lambda: _typing(actor, about, places),
         "read": lambda: _reading(actor, held, acting, graph, places),
         "wear": lambda: at_body(actor, node_of(graph, about).class_name if about else "", acting, held, "sheet"),
+        "free": lambda: free_aims(gesture.free, actor, carrying(actor, held, graph, places)),
         "wave": lambda: _waving(actor, acting),
         "rub": lambda: _rubbing(actor, held, acting, about, graph, places),
         "push": lambda: _pushing(actor, held, about, places),

@@ -15,6 +15,7 @@ from hearth.rendering.people.bedding import Remade
 from hearth.rendering.people.body_pose import BodyPose
 from hearth.rendering.people.clearance import arms_on_the_way
 from hearth.rendering.people.foot_steps import planted, stepping
+from hearth.rendering.people.free_gestures import whole_body
 from hearth.rendering.people.gait import Gait, movements
 from hearth.rendering.people.gestures import Gesture, gesture_of
 from hearth.rendering.people.lying_down import lying_down, made_ready
@@ -110,6 +111,13 @@ def track(one: Actor, other: Actor, before: Keyframe, after: Keyframe, step: Ste
     return Track(tuple(segments), change / rate)
 
 
+RATES = {"hop": 0.9, "beat": 2.4, "shake": 2.2, "circle": 1.1}
+"""Motions of a hand, times a second."""
+
+FAR = {"hop": 0.05, "beat": 0.06, "shake": 0.09, "circle": 0.05}
+"""Distance of the hand from its place at most, metres."""
+
+
 def acted(actor: Actor, gesture: Gesture) -> Segment:
     """Return the hands at work: what they do once they have arrived."""
 
@@ -121,7 +129,8 @@ def acted(actor: Actor, gesture: Gesture) -> Segment:
         effort = effort_of(pose, actor.body.proportions)
         wide = RUBBED / 2 if pose.right and pose.left else RUBBED
         right, left = (_at_work(pose.target(side), gesture.motion, time, soft, side, wide) for side in "rl")
-        return replace(actor, body_pose=replace(pose, right=right, left=left, effort=effort))
+        busy = replace(actor, body_pose=replace(pose, right=right, left=left, effort=effort))
+        return whole_body(busy, gesture.motion, time, soft)
 
     return Segment(gesture.seconds, at)
 
@@ -132,6 +141,14 @@ def _at_work(at: Point | None, motion: str, time: float, soft: float, side: str,
     x, y, z = at
     if motion == "keys":
         return x, y + 0.016 * soft * sin(2 * pi * (2.2 * time + (0.5 if side == "l" else 0.0))), z
+    if motion in ("hop", "beat", "shake", "circle"):
+        turn = 2 * pi * RATES[motion] * time
+        far = FAR[motion] * soft
+        return (
+            x + (far * sin(turn + pi / 2) if motion == "circle" else 0.0),
+            y + (far * sin(turn) if motion in ("shake", "hop") else 0.0),
+            z + (far * sin(turn) if motion in ("beat", "circle") else 0.0),
+        )
     # Two hands move against each other.
     across = wide if side == "r" else -wide
     return x + across * soft * sin(2 * pi * 0.9 * time), y, z + 0.025 * soft * sin(4 * pi * 0.9 * time)

@@ -6,6 +6,7 @@ import numpy as np
 
 from hearth.rendering.people.action_poses import Actor, dressed_for, reachable
 from hearth.rendering.people.clearance import at_rest
+from hearth.rendering.people.free_gestures import freely
 from hearth.rendering.people.gestures import gesture_of
 from hearth.rendering.people.hand_gestures import gesturing
 from hearth.rendering.people.held_objects import hold_of_node
@@ -42,7 +43,10 @@ def posed(actor: Actor, graph: EnvironmentGraph, places: Places, step: Step | No
         aims = {side: _stooped(aim, actor, acting) for side, aim in carried.items()} | acting
         if gesture.hand == "read":
             gaze = aims["right"].palm if "right" in aims else gaze
-    found = replace(actor, body_pose=replace(with_aims(pose, aims), gaze=gaze), body=body)
+    pose = replace(with_aims(pose, aims), gaze=gaze)
+    if gesture.free and pose.posture != "lying":
+        pose = freely(pose, gesture.free, body.height)
+    found = replace(actor, body_pose=pose, body=body)
     return at_rest(found, places.solids, [side[0] for side in acting])
 
 

@@ -193,7 +193,7 @@ def _classify(
 ) -> ErrorClass:
     if failure.code in STATIC:
         return STATIC[failure.code]
-    already = _is_so(steps[failed].action, failure.code, worlds[0].home.knowledge)
+    already = is_already_so(steps[failed].action, failure.code, worlds[0].home.knowledge)
     if already or (failure.code is Code.NOT_HOLDING and _is_put(steps[failed], worlds[-1])):
         return ErrorClass.ADDITIONAL_STEP
     alone = len(worlds) == failed + 1  # with several agents per tick, worlds and steps do not correspond
@@ -202,7 +202,7 @@ def _classify(
     return ErrorClass.MISSING_STEP
 
 
-def _is_so(action: str, code: Code, knowledge: Knowledge) -> bool:
+def is_already_so(action: str, code: Code, knowledge: Knowledge) -> bool:
     """Return whether a failure implies that the action's effect already holds."""
     if code in ALREADY_IN:
         return action in knowledge.achieving(ALREADY_IN[code])

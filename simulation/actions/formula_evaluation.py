@@ -204,3 +204,29 @@ def _in_state(reading: Reading, part: Literal[Term], variable: str, bound: Bound
 
 _NEAR = {"holds": _held, "state": _in_state, **dict.fromkeys(RELATIONS, _related)}
 """The predicates that narrow which nodes a variable may be."""
+
+
+def row_of(part: Formula, variable: str) -> Callable[[Reading, Bound], int] | None:
+    """Return a reader of the very things for which a literal holds: what is held, or is in or on another thing.
+
+    None for every other part; `candidates` narrows these.
+    """
+    if not isinstance(part, Literal) or part.negated or len(part.terms) != 2 or any(t.function for t in part.terms):
+        return None
+    first, second = part.terms
+    if part.name == "holds" and second.name == variable and first.name == "a":
+        return lambda reading, bound: reading.agent.held
+    if part.name == "ON" and first.name == variable != second.name:
+        return lambda reading, bound: edge_rows.bearing(reading.world, bound[second.name])
+    if part.name == "INSIDE" and first.name == variable != second.name:
+        return lambda reading, bound: _contents(reading.world, bound[second.name])
+    return None
+
+
+def _contents(world: World, i: int) -> int:
+    """Return everything INSIDE i, characters included, and whether or not it is a character itself."""
+    found = edge_rows.character(world, i).contents if world.home.characters >> i & 1 else edge_rows.contents(world, i)
+    for agent in world.agents:
+        if agent.inside >> i & 1:
+            found |= agent.bit
+    return found

@@ -11,8 +11,10 @@ from hearth.simulation.actions.common import Action, Masks, refuse, some
 from hearth.simulation.actions.locomotion import arrived, destination, gone, need_legs
 from hearth.simulation.actions.situation import Situation
 from hearth.simulation.motion import positions
+from hearth.simulation.motion.giving_way import stride_aside
 from hearth.simulation.motion.ground import Here, ground_of
-from hearth.simulation.motion.stride_ahead import closed_doors, in_the_way, others_of, stride_ahead
+from hearth.simulation.motion.navigation import BODY_RADIUS
+from hearth.simulation.motion.stride_ahead import SHARES, SLACK, closed_doors, in_the_way, others_of, stride_ahead
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.pose import Pose
 from hearth.simulation.world.world import World
@@ -41,7 +43,13 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         taken = ways.blocked(other.pose.point for other in others_of(world, number) if other.pose is not None)
         taken[ways.around(pose.x, pose.z)] = False
         without = tuple(sorted({*shut, *taken.nonzero()[0].tolist()}))
-        x, z, cell = ways.stepped(ways.detour(ends, without), pose.x, pose.z, agent.stride)
+        way = ways.detour(ends, without)
+        for share in SHARES:
+            x, z, cell = ways.stepped(way, pose.x, pose.z, agent.stride * share)
+            if cell == -2 or not in_the_way(world, number, (pose, Pose(x, z)), 2 * BODY_RADIUS - SLACK):
+                break
+        else:
+            cell = -2
         if cell == -2:
             return world
     if cell == -2:
@@ -51,6 +59,13 @@ def walk_towards(world: World, number: int, o: int, _: int, rules: Rules) -> Wor
         return arrived(world, number, o, room, positions.facing(world, there, o), rules)
     there = Pose(x, z, pose.towards((x, z)).yaw)
     return _under_way(world, number, here, there)
+
+
+def stepped_aside(world: World, number: int, other: int, target: int, rules: Rules) -> World:
+    """Return the world after a character has made a stride out of another's way to a thing, if it can."""
+    there = stride_aside(world, number, other, target, rules)
+    here = ground_of(world.home)
+    return world if here is None or there is None else _under_way(world, number, here, there)
 
 
 def walk_forward(world: World, number: int, _: int, __: int, rules: Rules) -> World | Failure:

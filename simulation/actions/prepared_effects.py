@@ -14,7 +14,7 @@ from hearth.kb.formula import TRUE, And, Effect, Formula, Term, free
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import EVERY_STATE_ID
-from hearth.simulation.actions.formula_evaluation import Bound, Reading, candidates, is_of_kind, kind_of
+from hearth.simulation.actions.formula_evaluation import Bound, Reading, candidates, is_of_kind, kind_of, row_of
 from hearth.simulation.actions.literal_effects import Change, excluded, made
 from hearth.simulation.rules import Rules
 from hearth.simulation.world.agent import Agent
@@ -22,21 +22,44 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import BEARS, CONTENTS
 from hearth.simulation.world.world import World
 
+Row = Callable[[Reading, Bound], int]
+"""A reader of the things for which a literal holds, by the other variables."""
+
 Guard = Callable[[World, Agent, int, int], bool]
 """A test of whether effects may take place, by a world, a character, and the indices of the objects."""
 
 
 class _Level(NamedTuple):
-    """A variable, the parts by which it is looked for, and those that are read once it is bound."""
+    """A variable, the parts by which it is looked for, and those that are read once it is bound.
+
+    Attributes:
+        variable: its name.
+        sought: the parts that narrow which things are tried.
+        checks: the parts that are read for each of these.
+        rows: readers of the things for which other parts hold; where there are any, `sought` has only kinds.
+    """
 
     variable: str
     sought: tuple[Formula, ...]
     checks: tuple[Formula, ...]
+    rows: tuple[Row, ...] = ()
+
+    def things(self, reading: Reading, bound: Bound) -> int:
+        """Return the things that are tried for the variable."""
+        if not self.rows:
+            return candidates(reading, self.variable, self.sought, bound)
+        found = -1
+        for row in self.rows:
+            found &= row(reading, bound)
+        for part in self.sought if found else ():
+            found &= kind_of(reading.world.home, part)
+        return found
 
 
 class _Group(NamedTuple):
-    """Effects of one condition and the same variables."""
+    """Effects of one condition and the same variables, with a guard that has to say yes before it is read."""
 
+    guard: Guard
     literals: tuple[Literal[Term], ...]
     checks: tuple[Formula, ...]
     levels: tuple[_Level, ...]
@@ -46,8 +69,9 @@ class _Group(NamedTuple):
         if level == len(self.levels):
             yield bound
             return
-        variable, sought, checks = self.levels[level]
-        for i in indices(candidates(reading, variable, sought, bound)):
+        this = self.levels[level]
+        variable, checks = this.variable, this.checks
+        for i in indices(this.things(reading, bound)):
             extended = {**bound, variable: i}
             if all(reading.holds(part, extended) for part in checks):
                 yield from self.solutions(reading, extended, level + 1)
@@ -108,7 +132,10 @@ class Prepared(NamedTuple):
         else:
             return world
         reading, bound = Reading(before, agent, rules, action), bound_to(agent, o, s)
-        found = [change for group in self.groups for change in group.changes(reading, bound)]
+        groups = self.groups
+        if len(groups) > 1:
+            groups = tuple([group for group in groups if group.guard(before, agent, o, s)])
+        found = [change for group in groups for change in group.changes(reading, bound)]
         return made(found, world) if found else world
 
 
@@ -179,8 +206,18 @@ def _group(effects: Sequence[Effect]) -> _Group:
         known.add(variable)
         ripe = [part for part in waiting if free(part) <= known]
         waiting = [part for part in waiting if part not in ripe]
-        levels.append(_Level(variable, sought, tuple(part for part in ripe if not _is_sure(part, variable))))
-    return _Group(tuple(each.literal for each in effects), checks, tuple(levels))
+        levels.append(_level(variable, sought, ripe))
+    return _Group(_guard(first), tuple(each.literal for each in effects), checks, tuple(levels))
+
+
+def _level(variable: str, sought: tuple[Formula, ...], ripe: Iterable[Formula]) -> _Level:
+    checks = [part for part in ripe if not _is_sure(part, variable)]
+    rows = [(part, row) for part in checks if (row := row_of(part, variable)) is not None]
+    if rows:
+        sought = tuple(part for part in sought if _is_sure(part, variable))
+        read = [part for part, _ in rows]
+        checks = [part for part in checks if part not in read]
+    return _Level(variable, sought, tuple(checks), tuple(row for _, row in rows))
 
 
 def _parts(formula: Formula) -> list[Formula]:
@@ -230,13 +267,15 @@ def _carries(world: World, agent: Agent, o: int, s: int) -> bool:
     held = rest = agent.right | agent.left
     if not held:
         return False
-    contents, bears, moved = world.home.contents, world.home.bears, world.moved
+    home, moved = world.home, world.moved
     extra = moved.extra
     while rest:  # `indices` takes three times as long for the one or two
         i = rest.bit_length() - 1
-        if extra.get(8 * i + CONTENTS) or extra.get(8 * i + BEARS):
+        key = 8 * i
+        if key + CONTENTS in extra or key + BEARS in extra:
             return True
-        if contents[i] & ~moved.inside or bears[i] & ~moved.on:
+        inside, on = home.contents[i], home.bears[i]
+        if (inside and inside & ~moved.inside) or (on and on & ~moved.on):
             return True
         rest ^= 1 << i
     return _anybody_there(world, held)
@@ -248,8 +287,10 @@ def _is_on_or_carries(world: World, agent: Agent, o: int, s: int) -> bool:
 
 def _is_full_or_laden(world: World, agent: Agent, o: int, s: int) -> bool:
     moved = world.moved
+    if 8 * o + BEARS in moved.extra:
+        return True
     on = world.home.bears[o]
-    return 8 * o + BEARS in moved.extra or on & ~moved.on != 0 or _is_full(world, agent, o, s)
+    return bool(on and on & ~moved.on) or _is_full(world, agent, o, s)
 
 
 def _is_full(world: World, agent: Agent, o: int, s: int) -> bool:

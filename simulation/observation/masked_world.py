@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+from hearth.simulation.world.action_set_3_states import WIDTH, counts_of, is_wide
 from hearth.simulation.world.agent import Agent, made
+from hearth.simulation.world.process_ticks import Ticks
 from hearth.simulation.world.world import World
 
 
@@ -18,7 +22,9 @@ def as_seen(world: World, mask: int) -> World:
     """
     if _LAST and _LAST[0][0] is world and _LAST[0][1] == mask:
         return _LAST[0][2]
-    states = tuple([row & mask for row in world.states])
+    states: tuple[Any, ...] = tuple([row & mask for row in world.states[:WIDTH]])
+    if is_wide(world):
+        states = (*states, Ticks(tuple([row & mask for row in counts_of(world)])))
     seen = World(world.home, states, tuple([_seen(agent, mask) for agent in world.agents]), world.moved)
     _LAST[:] = [(world, mask, seen)]
     return seen

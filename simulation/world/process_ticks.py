@@ -4,7 +4,7 @@ The count of each thing is kept bit by bit: a row of nodes has the lowest bit of
 the second bit, and so on. While nothing changes, no row is touched: the number of such ticks is kept instead.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 SETTLED, STILL = 1, 2
 """Values of `World.settled`."""
@@ -28,6 +28,7 @@ class Ticks(NamedTuple):
         due: the age at which a process is done for some thing; 0 while no process goes on.
         watched: the keys of the rows of `Moved.extra` that say what is in, or on, the devices that are at work.
         beside: these devices, and the things in, or on, them in the home as it is given.
+        asked: the answers of all processes when they were last asked (see `stale_processes.Asked`); None if never.
     """
 
     rows: tuple[int, ...]
@@ -36,11 +37,12 @@ class Ticks(NamedTuple):
     due: int = 0
     watched: tuple[int, ...] = ()
     beside: int = 0
+    asked: Any = None
 
     def older(self) -> "Ticks":
         """Return the counts one tick later, where nothing has changed."""
-        rows, going_on, age, due, watched, beside = self
-        return Ticks(rows, going_on, age + 1, due, watched, beside)
+        rows, going_on, age, due, watched, beside, asked = self
+        return Ticks(rows, going_on, age + 1, due, watched, beside, asked)
 
     def counted(self) -> tuple[int, ...]:
         """Return the bits of the counts as they are now."""

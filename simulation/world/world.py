@@ -33,8 +33,10 @@ class World(WorldState):
         (False, True)
     """
 
-    __slots__ = ("_key", "settled")
+    __slots__ = ("_key", "settled", "wide")
     _key: tuple[object, ...]
+    wide: World
+    """The same world with the further states; only a start of set 2 that has been run by set 3 has it."""
     settled: int
     """`SETTLED` if its `Ticks` name all that goes on in it. `STILL` if nothing goes on and no device is at work: then
     nothing can begin before a state changes. Not set in a world that was made in another way than by a tick (see

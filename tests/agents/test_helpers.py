@@ -129,7 +129,7 @@ def test_where_an_unseen_partner_is_is_not_known(maple):
     assert play(world, goal, [None, Hierarchical()], 1, scramble=elsewhere).choices == plain.choices
 
 
-@pytest.mark.parametrize("name", ["hp_true", "hp_timed", "hp_random"])
+@pytest.mark.parametrize("name", ["hp_true", "hp_true_veto", "hp_timed", "hp_random"])
 def test_what_a_helper_does_not_see_changes_nothing(kitchen, name):
     goal = wanted(kitchen, "ON", "dining_table", plate=2, fork=2)
     runs = []

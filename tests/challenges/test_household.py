@@ -11,12 +11,14 @@ from hearth.agents.forbidden_actions import forbidden
 from hearth.challenges import household
 from hearth.challenges.episodes import read_instruction as read_step
 from hearth.challenges.household import digest_of, household_ids, household_task, household_tasks, solve
+from hearth.challenges.household_activities import _titles, activities
 from hearth.challenges.household_definition import (
     RULES,
     home_named,
     settings,
     share_of,
     share_of_goal,
+    share_of_program,
     split_named,
 )
 from hearth.challenges.household_files import read_tasks, write_tasks
@@ -27,7 +29,9 @@ from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.goals import Goal
+from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.literals import Literal
+from hearth.schemas.program import ObjectRef, Step
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
 from hearth.simulation.literal_truth import candidates
@@ -38,6 +42,15 @@ from hearth.simulation.world.digest import digest
 SPLITS = tuple(settings()["splits"])
 TRAIN = 20
 OTHERS = 10
+PUBLISHED = {
+    "train": "a56331ceeb8eab2235920d0b8f71b0b9",
+    "valid_seen": "285d7b4fe2550cdc86621e1d4ad49dd7",
+    "valid_unseen": "c4ce54853e365b0f1dc08210195ec0f6",
+    "valid_words": "228da3aaaa789032d27fabf017dfa032",
+    "test_seen": "25c0aed60b21a5375ef429f47c4906e6",
+    "test_unseen": "dc4d15fd418a44930ff84bf261edf0f4",
+}
+"""Digests of the first ten tasks of each split."""
 
 
 @pytest.fixture(scope="module")
@@ -55,6 +68,11 @@ def every(drawn):
 def test_there_are_twelve_thousand_ids_or_more():
     ids = [task_id for split in SPLITS for task_id in household_ids(split)]
     assert len(set(ids)) == len(ids) >= 12_000
+
+
+@pytest.mark.parametrize("split", SPLITS)
+def test_the_published_tasks_stay_as_they_are(drawn, split):
+    assert digest_of(drawn[split][:10]) == PUBLISHED[split]
 
 
 def test_every_family_is_there(drawn):
@@ -110,21 +128,77 @@ def test_an_activity_has_a_persons_words_and_their_short_form(every):
         assert (IN_SHORT in task.instruction) == bool(task.activity) == (task.family == "activity")
 
 
-def test_no_instruction_goal_or_program_of_another_split_is_in_train(drawn):
-    def parts(task):
-        goal = frozenset((str(literal), number) for literal, number in task.goal), task.goal.parts
-        return {("words", task.instruction), ("goal", goal), ("program", (task.home, *task.expert))}
-
-    train = {part for task in drawn["train"] for part in parts(task)}
-    for split in SPLITS[1:]:
-        for task in drawn[split]:
-            assert not parts(task) & train, task.id
+def _parts(task, steps):
+    """Return what no test may have in common with train."""
+    goal = frozenset((str(literal), number) for literal, number in task.goal), task.goal.parts
+    return {("words", task.instruction), ("goal", goal), ("program", (task.home, *map(str, steps)))}
 
 
-def test_a_goal_belongs_to_one_share_whatever_its_order(every):
+def _steps(task, knowledge):
+    home, allowed = task.start(knowledge).home, knowledge.group(settings()["actions"])
+    return [read_step(text, 0, home, allowed) for text in task.expert if text]
+
+
+@pytest.fixture(scope="module")
+def programs(every, knowledge):
+    """The steps of each task's expert, by id."""
+    return {task.id: _steps(task, knowledge) for task in every}
+
+
+def _leaks(tasks, programs):
+    """Return the ids of tasks of other splits that have something in common with train."""
+    train = {part for task in tasks if task.split == "train" for part in _parts(task, programs[task.id])}
+    return [task.id for task in tasks if task.split != "train" and _parts(task, programs[task.id]) & train]
+
+
+def test_no_instruction_goal_or_program_of_another_split_is_in_train(every, programs):
+    assert _leaks(every, programs) == []
+
+
+@pytest.mark.slow
+def test_none_of_many_tasks_is_in_train(knowledge):
+    limits = {split: 2_000 if split == "train" else 400 for split in SPLITS}
+    ids = [each for split, limit in limits.items() for each in household_ids(split, limit)]
+    tasks = [household_task(each, knowledge=knowledge) for each in ids]
+    assert _leaks(tasks, {task.id: _steps(task, knowledge) for task in tasks}) == []
+
+
+def test_goal_and_program_of_a_task_belong_to_the_share_of_its_split(every, programs):
     for task in every:
-        assert share_of_goal(task.goal) == split_named(task.split).goals
-        assert share_of_goal(Goal(task.goal.counts[::-1], task.goal.parts)) == share_of_goal(task.goal)
+        share = split_named(task.split).goals
+        assert share_of_goal(task.goal) == share == share_of_program(programs[task.id]), task.id
+        assert share_of_goal(Goal(task.goal.counts[::-1], task.goal.parts)) == share
+
+
+def test_goals_that_one_program_reaches_belong_to_one_share():
+    """Numbers, bans and the way to things do not matter, so that no such goal is of a test if another is trained on."""
+    shelf = Goal.of(Literal.of("INSIDE", "book", "bookshelf"))
+    assert share_of_goal(shelf & Goal(parts=(Joined("not", (shelf,)),))) == share_of_goal(shelf)
+    assert share_of_goal(Goal.of((Literal.of("INSIDE", "book", "bookshelf"), 2))) == share_of_goal(shelf)
+    book, place = ObjectRef("book", 0, 5), ObjectRef("bookshelf", 0, 6)
+    done = [
+        Step("Walktowards", (ObjectRef("sofa", 0, 9),)),
+        Step("Grab", (book,)),
+        Step("Open", (ObjectRef("door", 0, 3),)),
+    ]
+    assert share_of_program([*done, Step("PutIn", (book, place))]) == share_of_goal(shelf)
+
+
+def test_a_program_of_another_share_is_no_task_of_the_split(monkeypatch, knowledge, drawn):
+    share, rejected = household.share_of_program, Counter()
+    first = iter(["test"])
+    monkeypatch.setattr(household, "share_of_program", lambda steps: next(first, None) or share(steps))
+    assert household_task("household-train-00001", rejected, knowledge) != drawn["train"][1]
+    assert rejected["program of another split"] >= 1
+
+
+def test_a_program_of_the_corpus_is_drawn_for_one_share_alone():
+    found = {}
+    for share in settings()["shares"]:
+        for ids in _titles(share).values():
+            for each in ids:
+                found.setdefault(" ".join(activities()[each].program.lower().split()), set()).add(share)
+    assert len(found) > 4_000 and all(len(shares) == 1 for shares in found.values())
 
 
 def test_activities_of_tests_are_in_no_training_task(every):

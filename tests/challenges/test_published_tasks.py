@@ -9,6 +9,8 @@ import pytest
 
 from hearth.challenges import published_tasks
 from hearth.challenges.challenge_definition import challenge
+from hearth.challenges.household import household_task
+from hearth.challenges.published_tasks import tasks
 from hearth.challenges.task_files import read, read_suite, suite, suite_data, write
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -64,6 +66,13 @@ def test_a_seed_draws_other_tasks_and_a_limit_takes_the_first():
     assert other == again
     assert {task.seed for task in other}.isdisjoint({task.seed for task in published})
     assert {task.id for task in other}.isdisjoint({task.id for task in published})
+
+
+def test_household_tasks_are_those_of_a_suite_and_of_their_ids():
+    first, second = tasks("household", "valid_seen", limit=2)
+    assert (first, second) == suite("household", "valid_seen", limit=2).tasks and first.challenge == "household"
+    assert second.origin == household_task("household-valid_seen-00001")
+    assert tasks("household", "train", 9, limit=1)[0].id == "household-train-9-00000"
 
 
 def test_an_unknown_split_is_refused():

@@ -39,6 +39,14 @@ def test_a_program_without_a_hazard_is_clean_and_one_that_stops_is_not(tmp_path)
     assert "failed" in call("hazards", file, "--home", "maple", status=1).output
 
 
+def test_a_fridge_that_is_opened_for_nothing_is_waste(tmp_path):
+    file = tmp_path / "look.txt"
+    file.write_text("Look\n1. Walk to the fridge\n2. Open the fridge\n3. Close the fridge\n")
+    assert "is opened, and nothing is put in or taken out" in call("hazards", file, "--home", "maple").output
+    data = json.loads(call("hazards", file, "--home", "maple", "--json").output)
+    assert [(each["state"], each["step"]) for each in data["wasted"]] == [("OPENED", 2)] and data["left"] == []
+
+
 def test_what_a_made_home_has_besides_is_printed(tmp_path):
     file = tmp_path / "iron.txt"
     file.write_text("Iron\n1. Walk to the bedroom\n2. Find the iron\n3. Switch on the iron\n4. Walk to the kitchen\n")

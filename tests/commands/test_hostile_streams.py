@@ -103,15 +103,15 @@ def test_a_link_stays_one_and_the_file_keeps_its_mode(tmp_path):
      "https://a.example:99999", "https://a.example:0", "https://a\x1b[2J.example", "http://a.example", "https://"],
 )  # fmt: skip
 def test_a_public_address_is_a_name_and_a_port(public):
-    from hearth.commands.serve import _hosts
+    from hearth.commands.serve import public_hosts
 
     with pytest.raises(HearthError) as caught:
-        _hosts(public)
+        public_hosts(public)
     assert caught.value.diagnostics[0].code is Code.BAD_ARGUMENT
 
 
 @pytest.mark.parametrize("public", ["https://a.example", "https://a-b.example:8443", "https://[::1]:8443"])
 def test_public_addresses_are_taken(public):
-    from hearth.commands.serve import _hosts
+    from hearth.commands.serve import public_hosts
 
-    assert _hosts(public) == (public.removeprefix("https://"),)
+    assert public_hosts(public) == (public.removeprefix("https://"),)

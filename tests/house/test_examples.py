@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.md"))
-TEXT = ROOT / "docs/text-environment.md"
+ENVIRONMENTS = [ROOT / "docs/text-environment.md", ROOT / "docs/arrays.md"]
 TUTORIAL = sorted((ROOT / "docs/tutorial").glob("*.md"))
 OF_A_CHECKOUT = ("agents", "new-action")
 """Pages whose commands are given in Hearth's folder, of which they get a copy."""
@@ -23,13 +23,15 @@ def followed(module):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("page", [*EXAMPLES, *TUTORIAL, TEXT], ids=lambda page: page.stem)
+@pytest.mark.parametrize("page", [*EXAMPLES, *TUTORIAL, *ENVIRONMENTS], ids=lambda page: page.stem)
 def test_a_page_does_what_it_says(followed, page, tmp_path):
     text, folder, checkout = page.read_text("utf-8"), tmp_path / "here", ROOT
     if "stable_baselines3" in text:
         pytest.importorskip("stable_baselines3", reason="nothing to learn with: stable-baselines3 is not installed")
     if "hearth model train" in text or "hearth study figure" in text or "import torch" in text:
         pytest.importorskip("torch", reason="nothing to train or to run policies with: torch is not installed")
+    if "ArrayHomes" in text:
+        pytest.importorskip("numba", reason="nothing to compile kernels with: numba is not installed")
     if page.stem in OF_A_CHECKOUT:
         checkout = shutil.copytree(ROOT, folder, ignore=APART)
     folder.mkdir(exist_ok=True)

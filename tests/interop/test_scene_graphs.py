@@ -351,3 +351,70 @@ def test_words_for_states_that_mean_none_are_counted():
     found = read([{"label": "fridge", "state": "opn"}, {"label": "television", "states": ["on", "onn"]}])
     [note] = [note for note in found.fillings if note.what.startswith("words for states")]
     assert note.number == 2
+
+
+def test_a_thing_that_holds_itself_is_named():
+    data = [{"id": "a", "label": "box", "in": "a"}, {"id": "b", "label": "sofa", "contains": ["b"]}]
+    assert [fault.code for fault in read(data).left_out] == [Code.LOOP, Code.LOOP]
+
+
+def test_ids_that_two_things_share_are_named():
+    found = read(
+        {"rooms": [{"id": 1, "label": "kitchen"}], "objects": [{"id": 1, "label": "cup"}, {"id": 1, "label": "mug"}]}
+    )
+    [fault] = found.left_out
+    assert fault.code is Code.DUPLICATE and "objects[1]" in fault.message and "objects[0]" in fault.message
+    assert classes(found) == ["cup", "mug"]
+
+
+@pytest.mark.parametrize("data", [
+    [{"label": "fridge", "room": "garage"}],
+    {"rooms": [{"label": "garage"}], "objects": [{"label": "fridge"}]},
+])  # fmt: skip
+def test_a_room_that_is_none_of_ours_is_named_with_a_remedy(data):
+    [fault] = read(data).left_out
+    assert fault.code is Code.UNKNOWN_OBJECT and "garage" in fault.message and "mapping file" in fault.suggestion
+
+
+def test_the_basin_of_a_sink_is_the_sink():
+    sink = {"objectType": "Sink", "objectId": "Sink|1"}
+    basin = {"objectType": "SinkBasin", "objectId": "Sink|1|SinkBasin", "parentReceptacles": ["Sink|1"]}
+    cup = {"objectType": "Cup", "objectId": "Cup|1", "parentReceptacles": ["Sink|1|SinkBasin"]}
+    found = read({"objects": [sink, basin, cup]})
+    assert classes(found) == ["cup", "sink"]
+    assert ("cup", "sink") in held(found, "ON") | held(found, "INSIDE")
+
+
+def test_a_scene_of_omnigibson_has_classes_and_places_apart():
+    def info(category, room):
+        return {"class_module": "omnigibson.objects", "class_name": "DatasetObject",
+                "args": {"category": category, "model": "abc", "in_rooms": [room]}}  # fmt: skip
+
+    def state(*place):
+        return {"root_link": {"pos": list(place), "ori": [0, 0, 0, 1], "lin_vel": [0, 0, 0]}}
+
+    data = {
+        "metadata": {},
+        "objects_info": {"init_info": {"fridge_abc_0": info("fridge", "kitchen_0"),
+                                       "sofa_abc_0": info("sofa", "living_room_0"),
+                                       "walls_abc_0": info("walls", "kitchen_0")}},
+        "state": {"object_registry": {"fridge_abc_0": state(1.0, 2.0, 0.9), "sofa_abc_0": state(5.0, 2.0, 0.4),
+                                      "walls_abc_0": state(0, 0, 0)}},
+    }  # fmt: skip
+    found = read(data)
+    assert classes(found) == ["fridge", "sofa"] and found.left_out == ()
+    assert rooms_of(found)["fridge"] == "kitchen" and rooms_of(found)["sofa"] == "living_room"
+    [note] = [note for note in found.fillings if note.what.startswith("places, z upwards")]
+    assert note.number == 2
+
+
+def test_a_hundred_thousand_nodes_are_refused_at_once():
+    with pytest.raises(HearthError) as raised:
+        read({"objects": [{"id": number, "label": "cup"} for number in range(100_000)]})
+    assert raised.value.diagnostics[0].code is Code.FILE_TOO_LARGE
+
+
+def test_a_circle_of_holders_is_named_in_the_table():
+    found = read([{"id": "a", "label": "box", "in": "b"}, {"id": "b", "label": "box", "in": "a"}])
+    [note] = [note for note in found.fillings if "circles" in note.what]
+    assert note.number == 1 and "box" in note.examples[0]

@@ -32,7 +32,8 @@ def dataset(tmp_path_factory):
     annotated = {"answer": [[0, 1]] * 3, "represent": [1] * 3, "input": inputs}
     (folder / "sketches.json").write_text(json.dumps(annotated))
     sources = [str(folder / name) for name in ("programs.csv", "sketches.json")]
-    return hearth.build(sources, str(folder / "out"), homes=("maple",), variants=0, pictures=0, videos=0).dataset
+    options = {"homes": ("maple",), "action_set": 2, "variants": 0, "pictures": 0, "videos": 0}
+    return hearth.build(sources, str(folder / "out"), **options).dataset
 
 
 def test_a_written_sketch_stands_beside_the_inferred_one(dataset):

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
+
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 from builds import GOLDEN_SOURCES, Built
 
@@ -16,6 +20,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.vocabulary import EVERY_STATE
 from hearth.simulation.rules import CONSEQUENCES, DEFAULT, rules_of
+from hearth.storage.files import file_digest, read_json, write_json
 from hearth.storage.manifest import read_manifest
 from hearth.version import ACTION_SET, NEXT_ACTION_SET
 
@@ -150,6 +155,43 @@ def test_food_is_gone_at_the_end_and_bread_is_warm(by_3):
             assert dataset.rows(f"SELECT count(*) FROM final_state('{name}') WHERE state = '{state}'")[1] == [(1,)]
 
 
+def test_executions_have_the_harm_that_they_did(by_3):
+    dataset = Dataset.open(by_3.out)
+    for title, column, state in (("Eat an apple", "irreversible", "GONE"), ("Heat the bread", "wasted", "")):
+        for name in originals(dataset, title):
+            query = f"SELECT list_transform({column}, lambda each: each.state) FROM executions WHERE execution_id = $id"
+            (found,) = dataset.rows(query.replace("$id", f"'{name}'"))[1][0]
+            assert found == ([state] if state else [])
+    for name in originals(dataset, "Switch the fridge off"):
+        query = f"""SELECT hazards[1].hazard, hazards[1].step, hazards[1].lasted, hazards[1].at_end, wasted[1].state
+            FROM executions WHERE execution_id = '{name}'"""
+        assert dataset.rows(query)[1] == [("fridge_open", 3, 2, True, "OPEN")]
+    comment = "SELECT comment FROM duckdb_columns() WHERE column_name = 'hazards' AND table_name = 'executions'"
+    assert "dangers" in dataset.rows(comment)[1][0][0]
+
+
+def test_harm_that_was_changed_is_found_by_verify(by_3, tmp_path):
+    copy = tmp_path / "copy"
+    shutil.copytree(by_3.out / "publish", copy)
+    manifest = read_json(copy / "manifest.json")
+    for path in (copy / "executions").glob("*.parquet"):
+        table, kept = pq.read_table(path), pq.read_metadata(path).metadata
+        rows = [{**row, "hazards": []} for row in table.to_pylist()]
+        pq.write_table(pa.Table.from_pylist(rows, table.schema.with_metadata(kept)), path)
+        entry = {"bytes": path.stat().st_size, "sha256": file_digest(path)}
+        manifest["files"][path.relative_to(copy).as_posix()] = entry
+    write_json(copy / "manifest.json", manifest)
+    (fault, *_) = verify(copy).faults
+    assert fault.code is Code.REPLAY_DIFFERS and "other hazards than the row says" in fault.message
+
+
+def test_datasets_of_set_2_have_no_columns_of_harm(source, tmp_path):
+    built = made(tmp_path / "by 2", source, None)
+    dataset = Dataset.open(built.out)
+    assert {"hazards", "irreversible", "wasted"}.isdisjoint(dataset.executions.columns)
+    assert "hazards" not in (dataset.folder / "catalog.sql").read_text() + (dataset.folder / "README.md").read_text()
+
+
 def test_bytes_are_the_same_for_any_number_of_workers(by_3, source, tmp_path):
     again = made(tmp_path / "again", source, 3, workers=2)
     one, other = (read_manifest(each.out / "publish") for each in (by_3, again))
@@ -194,3 +236,22 @@ def test_the_rules_follow_the_knowledge():
     assert rules_of(known) is DEFAULT and rules_of(known.of_set(3)) is CONSEQUENCES
     with pytest.raises(ValueError, match="no action set 4"):
         known.of_set(4)
+
+
+def test_a_new_dataset_is_of_set_3_unless_set_2_is_asked_for(source, tmp_path):
+    options = {"homes": ("maple",), "variants": 0, "pictures": 0, "videos": 0}
+    made = build([str(source)], str(tmp_path / "new"), **options)
+    assert made.rejected == 0 and Dataset.open(made.dataset).manifest["action_set"] == NEXT_ACTION_SET
+    before = build([str(source)], str(tmp_path / "before"), action_set=2, **options)
+    assert before.stages["sample"].codes["NOT_SIMULATED"]
+    assert Dataset.open(before.dataset).manifest["action_set"] == ACTION_SET and not verify(before.dataset).faults
+
+
+def test_stages_run_alone_begin_with_set_3_and_keep_to_set_2_where_it_was_asked_for(source, tmp_path):
+    out, names = str(tmp_path / "alone"), {"homes": ("maple",), "pictures": 0}
+    build([str(source)], out, only="ingest", **names)
+    for asked, expected in ((None, NEXT_ACTION_SET), (2, ACTION_SET)):
+        build([], out, only="validate", action_set=asked, **names)
+        build([], out, only="sample", **names)
+        for stage in ("validate", "sample"):
+            assert read_manifest(tmp_path / "alone" / stage).content["action_set"] == expected

@@ -98,7 +98,19 @@ def alive(process):
 @pytest.mark.usefixtures("interruptible")
 def test_a_build_stopped_at_the_keyboard_goes_on(made, module, tmp_path):
     homes = ["--homes", made.settings.homes_folder, "--home", "cabin"]
-    options = [*homes, "--out", str(tmp_path), "--pictures", "0", "--videos", "0", "--workers", "2"]
+    options = [
+        *homes,
+        "--out",
+        str(tmp_path),
+        "--action-set",
+        "2",
+        "--pictures",
+        "0",
+        "--videos",
+        "0",
+        "--workers",
+        "2",
+    ]
     command = [sys.executable, "-m", "hearth.cli", "build", *made.settings.sources, *options]
     build = subprocess.Popen(command, stderr=subprocess.PIPE, start_new_session=True, text=True)
     for _ in range(6000):

@@ -28,7 +28,7 @@ COFFEE = """[Walk] <kitchen> (1)
 def test_the_original_that_runs_is_no_case(tmp_path):
     batch = tmp_path / "programs.csv"
     batch.write_text(f'{HEAD}\nPA01006a,written,finder,Approved,,Make coffee,I brew coffee.,,,"{COFFEE}"\n')
-    options = {"homes": ("juniper",), "variants": 6, "pictures": 0, "videos": 0}
+    options = {"homes": ("juniper",), "action_set": 2, "variants": 6, "pictures": 0, "videos": 0}
     made = hearth.build([str(batch)], str(tmp_path / "out"), **options)
     assert made.stages["publish"].rejected == 0
     names = hearth.load(made.dataset).rows("SELECT DISTINCT environment_id FROM repairs WHERE outcome = 'REPAIRED'")[1]

@@ -17,7 +17,8 @@ from hearth.pipelines.build import build
 
 if __name__ == "__main__":
     out, workers, engine, homes, *sources = sys.argv[1:]
-    build(sources, out, workers=int(workers), engine=engine, homes=("cabin",), homes_folder=homes, pictures=0)
+    build(sources, out, workers=int(workers), engine=engine, homes=("cabin",), homes_folder=homes, pictures=0,
+          action_set=2)
 """
 
 

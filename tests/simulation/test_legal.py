@@ -12,9 +12,10 @@ from hearth.simulation.actions import appliances, cleaning, clothes, food, hands
 from hearth.simulation.actions.legal import legal
 from hearth.simulation.actions.registry import ACTIONS
 from hearth.simulation.engine import act
+from hearth.simulation.env import Env
 from hearth.simulation.observation import reach, visible_nodes
 from hearth.simulation.observation.masked_world import as_seen
-from hearth.simulation.rules import DEFAULT, REPLAY
+from hearth.simulation.rules import CONSEQUENCES, DEFAULT, REPLAY
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.edit import edit
 from hearth.simulation.world.home import Home
@@ -105,3 +106,11 @@ def test_masks_agree_with_questions_about_one_node(seed):
         assert bool(close >> i & 1) == edge_rows.is_close(world, agent, i)
         assert bool(facing >> i & 1) == edge_rows.is_facing(world, agent, i)
         assert bool(hidden >> i & 1) == (edge_rows.closed_container(world, i) >= 0)
+
+
+def test_by_action_set_3_an_agent_that_sees_its_room_has_legal_instructions_there(knowledge):
+    env = Env(CONSEQUENCES, partial=True, knowledge=knowledge.of_set(3))
+    env.reset("maple", seed=1)
+    env.step("[Walk] <fridge> (1)")
+    whole, seen = (set(map(str, env.legal(only_visible=each))) for each in (False, True))
+    assert seen and seen < whole

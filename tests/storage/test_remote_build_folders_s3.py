@@ -58,7 +58,18 @@ def bucket(server):
 def test_built_verified_and_queried(run, bucket, made, engine):
     if engine == "dask":
         pytest.importorskip("distributed")
-    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--videos", "0")
+    homes = (
+        "--homes",
+        made.settings.homes_folder,
+        "--home",
+        "cabin",
+        "--action-set",
+        "2",
+        "--pictures",
+        "0",
+        "--videos",
+        "0",
+    )
     bucket.put(str(made.settings.sources[1]), "homes/in/evening.txt")
     sources = [made.settings.sources[0], "s3://homes/in/evening.txt", made.settings.sources[2]]
     run("build", *sources, "--out", "s3://homes/evening", *homes, "--workers", "2", "--engine", engine)
@@ -96,7 +107,18 @@ print(opened, len(failed), ",".join(keys), failed[:3])
 
 
 def test_eight_readers_while_a_dataset_is_replaced(run, bucket, made, tmp_path):
-    homes = ("--homes", made.settings.homes_folder, "--home", "cabin", "--pictures", "0", "--videos", "0")
+    homes = (
+        "--homes",
+        made.settings.homes_folder,
+        "--home",
+        "cabin",
+        "--action-set",
+        "2",
+        "--pictures",
+        "0",
+        "--videos",
+        "0",
+    )
     run("build", *made.settings.sources, "--out", "s3://homes/evening", *homes)
     (tmp_path / "reader.py").write_text(READER)
     done, ready = tmp_path / "done", [tmp_path / f"ready{number}" for number in range(8)]

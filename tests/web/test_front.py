@@ -60,8 +60,11 @@ def test_nothing_of_a_person_is_reachable_without_a_token(server):
     for client in (server.client(), server.client(cookies={"hearth": "x" * 43}), server.client(cookies={"hearth": ""})):
         assert client.get("/mine").json()["error"]["code"] == "NO_SESSION"
         page = client.get("/mine", headers=HTML)
-        assert page.status_code == 401 and "Begin a session" in page.text
-        assert ("not known here any more" in page.text) is bool(client.cookies.get("hearth"))
+        lost = bool(client.cookies.get("hearth"))
+        assert page.status_code == (401 if lost else 200), "a newcomer has done nothing wrong"
+        assert "Begin a session" in page.text and "Your link" not in page.text
+        assert ("not known here any more" in page.text) is lost
+        assert client.post("/mine/delete", headers=HTML).status_code == 401
 
 
 def test_a_session_begins_returns_by_its_link_and_is_deleted(server):

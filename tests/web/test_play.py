@@ -331,7 +331,8 @@ def test_the_form_begins_a_game(person):
     assert all((f'value="{name}"' in page) is (name != "asking") for name in helpers())
     begun = person.post("/play/new", data={"challenge": "owah", "task": "1", "helper": "none", "sees": "partial"})
     assert begun.status_code == 303
-    assert "in rowan" in person.get(begun.headers["location"]).text
+    page = person.get(begun.headers["location"]).text
+    assert published("owah", "test", 1).home not in page, "a page says what to do, not how a home is called"
     for name, task in (("x", "1"), ("wah", "1000"), ("wah", "-1")):
         assert person.post("/play/new", data={"challenge": name, "task": task}).status_code == 400
 

@@ -8,7 +8,8 @@ from web.playing import Player
 from hearth.challenges.episodes import read_instruction
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import as_task
-from hearth.challenges.household_definition import settings
+from hearth.challenges.household_definition import home_words, settings
+from hearth.challenges.instruction_object_names import label
 from hearth.challenges.result_files import read
 from hearth.challenges.verification import verify
 from hearth.envs.json_observations import instruction_text
@@ -48,6 +49,9 @@ def test_a_task_is_asked_in_words_and_ends_when_its_goal_holds(person, task, tmp
     allowed = default().group(settings()["actions"])
     with Player(person, address.rpartition("/")[2]) as player:
         assert all(each["count"] < each["wanted"] or not each["wanted"] for each in player.state["goal"])
+        things = player.state["things"].values()
+        plain = [each for each in things if each[1] != "rooms"]
+        assert plain and all(words.startswith(label(name)) for name, _, _, words in plain)
         for text in task.origin.expert:
             assert not player.state["over"]
             step = read_instruction(text, 0, home, allowed) if text else None
@@ -59,7 +63,7 @@ def test_a_task_is_asked_in_words_and_ends_when_its_goal_holds(person, task, tmp
     found = read(file)
     assert verify(found, task.id, default) == []
     assert next(iter(found.records)).metrics["success"]
-    assert settings()["titles"][task.family] in person.get("/play/").text
+    assert f"{settings()['titles'][task.family]}, in {home_words(task.home)}" in person.get("/play/").text
 
 
 def test_a_task_is_begun_by_its_number(person):
@@ -92,10 +96,18 @@ def test_a_trial_of_a_household_task_is_read_as_it_was_written(task):
         (Literal.of("INSIDE", "milk", "fridge"), "Put milk in fridge"),
         (Literal.of("ON", "tablelamp"), "Switch a table lamp on"),
         (Literal("ON", ("tablelamp",), True), "Every table lamp off"),
+        (Literal.of("ON", "shoes", "agent"), "With a pair of shoes on"),
+        (Literal.of("ON", "mouse", "cpuscreen"), "Put mouse on computer screen"),
     ],
 )  # fmt: skip
 def test_every_part_of_a_goal_has_words(task, literal, words):
     assert goal_words(literal, task.start(default()).home) == words
+
+
+def test_names_are_words():
+    assert home_words("home_4_9") == "a generated home of 4 rooms" and home_words("maple") == "maple"
+    assert [label(each) for each in ("cpuscreen", "milk", "chest_of_drawers", "clothes_hat")] == [
+        "computer screen", "milk", "chest of drawers", "hat"]  # fmt: skip
 
 
 def test_what_was_seen_is_remembered_in_another_room(task):

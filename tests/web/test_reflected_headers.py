@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from web.people import DESK, Server
 
-from hearth.commands.serve import _hosts
+from hearth.commands.serve import public_hosts
 from hearth.web.security import own_address
 
 PATHS = ("/", "/mine", "/mine/", "/desk", "/desk/", "/desk/enter/", "/come/x/", "/begin/", "/nowhere", "/nowhere/",
@@ -73,9 +73,9 @@ def test_only_configured_hosts_are_answered(tmp_path, knowledge, host):
 
 
 def test_a_public_address_may_have_a_port(tmp_path, knowledge):
-    assert _hosts("https://homes.example:8443") == ("homes.example:8443",)
-    assert _hosts("https://homes.example:443") == _hosts("https://homes.example") == ("homes.example",)
-    made = Server(tmp_path / "served", knowledge, hosts=_hosts("https://homes.example:8443"))
+    assert public_hosts("https://homes.example:8443") == ("homes.example:8443",)
+    assert public_hosts("https://homes.example:443") == public_hosts("https://homes.example") == ("homes.example",)
+    made = Server(tmp_path / "served", knowledge, hosts=public_hosts("https://homes.example:8443"))
     found = [made.client().get("/privacy", headers={"host": f"homes.example{port}"}) for port in (":8443", "", ":1")]
     made.store.close()
     assert [answer.status_code for answer in found] == [200, 403, 403]

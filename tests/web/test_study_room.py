@@ -329,7 +329,8 @@ def test_a_study_that_has_begun_does_not_change(judging, tmp_path):
     judging.person().post("/study/agree", data={"agree": "yes"})
     (tmp_path / "study.yaml").write_text(JUDGE.replace("seed: 1", "seed: 2"))
     answer = judging.person().get("/study/", headers={"accept": "text/html"})
-    assert answer.status_code == 400 and "began with another file" in answer.text
+    assert answer.status_code == 400 and "was changed while people take part" in answer.text
+    assert "began with another file" in judging.person().get("/study/").json()["error"]["actual"]
 
 
 def test_a_server_does_not_start_with_a_study_that_began_otherwise(judging, tmp_path, monkeypatch):

@@ -9,6 +9,7 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
+from hearth.schemas.rng import rng
 from hearth.schemas.yaml_limits import packaged
 from hearth.web.annotate.annotate_tables import QUALIFIED
 from hearth.web.room_request import Visit
@@ -18,7 +19,7 @@ YES, NO = "yes", "no"
 """The answers."""
 
 MOST_TRIES = 3
-"""Tests that one session may take, since the answers are shown afterwards."""
+"""Tests that one session may take."""
 
 
 @cache
@@ -34,11 +35,13 @@ def is_qualified(store: Store, person: str) -> bool:
 
 
 def test_page(visit: Visit) -> Response:
-    """Return the questions, and after an answer the right answers with reasons.
+    """Return the questions in an order of this try; once the test is passed, the right answers with reasons.
 
     To load the page again costs no attempt.
     """
-    questions, taken = _test()["questions"], _taken(visit)
+    taken = _taken(visit)
+    questions = list(enumerate(_test()["questions"]))
+    rng(0, "qualification", visit.person, taken).shuffle(questions)
     values: dict[str, Any] = {"questions": questions, "taken": taken, "left": MOST_TRIES - taken}
     given = visit.field("given", len(questions)) if taken else ""
     answers = [YES if letter == YES[0] else NO for letter in given]

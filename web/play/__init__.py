@@ -29,7 +29,11 @@ ROOM = Room(
         get("/join/{code}", play_pages.join_page),
         post("/join/{code}", play_pages.join),
     ),
-    desk=(get("", play_pages.desk_page), get("/results.jsonl", play_pages.desk_results)),
+    desk=(
+        get("", play_pages.desk_page),
+        get("/", play_pages.desk_page),
+        get("/results.jsonl", play_pages.desk_results),
+    ),
     needs=("three",),
     keeps=game_withdrawal.keep,
 )

@@ -2,26 +2,32 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from functools import reduce
+from functools import lru_cache, reduce
 from operator import or_
 from typing import Any
 
-from hearth.challenges.instruction_writer import instruction
-from hearth.envs.json_observations import last_json
+from hearth.challenges.instruction_object_names import label
+from hearth.challenges.instruction_writer import acted, instruction
+from hearth.envs.json_observations import last_json, seen_failure
+from hearth.envs.seen_bans import BANS
 from hearth.homes.geometry import footprint
 from hearth.kb.action_groups import relation_of
-from hearth.schemas.goals import Goal
+from hearth.schemas.failure_words import sentence
+from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES
 from hearth.simulation.actions.legal import Legal
+from hearth.simulation.goals import Progress
+from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.masked_world import as_seen
-from hearth.simulation.observation.views import View
+from hearth.simulation.observation.views import LastAction, View
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
+from hearth.web.phrases import say
 from hearth.web.play.games import Game
 from hearth.web.play.player_memory import Counted
 
@@ -105,11 +111,13 @@ class Telling:
     def _goal(self, home: Home) -> list[dict[str, Any]]:
         """Return the counted parts of the goal as the person last saw them; what it did itself it knows."""
         counts = self.game.seen[self.number].counts
-        done = self.game.playing.progress[-1].counts if self.number == 0 else (0,) * len(counts)
-        return [
+        progress = self.game.playing.progress[-1]
+        done = progress.counts if self.number == 0 else (0,) * len(counts)
+        rows = [
             _wanted(replace(each, count=number) if each.seen.seen is None else each, home)
             for each, number in zip(counts, done, strict=True)
         ]
+        return [*rows, *joined_rows(progress)] if self.number == 0 else rows
 
     def tick(self) -> dict[str, Any]:
         """Return the tick as a message of its own."""
@@ -149,9 +157,32 @@ def _where(view: View, i: int, held: dict[int, Any]) -> tuple[str, int]:
 
 
 def _thing(home: Home, node_id: int) -> list[Any]:
-    """Return the constant facts about a thing: class, panel, footprint on the plan."""
-    node = home.node(home.index[node_id])
-    return [node.class_name, thing_group(node), _rect(node)]
+    """Return the constant facts about a thing: class, panel, footprint on the plan, and name for people."""
+    i = home.index[node_id]
+    node = home.node(i)
+    return [node.class_name, thing_group(node), _rect(node), called(home)[i]]
+
+
+@lru_cache(maxsize=64)
+def called(home: Home) -> tuple[str, ...]:
+    """Return what people call each thing of a home: `mug 2` where there are several mugs."""
+    names = [_called(home, i) for i in range(len(home.ids))]
+    places: dict[str, list[int]] = {}
+    for i in indices(home.everything):
+        if home.node(i).category not in UNTOUCHED - {ROOM_CATEGORY}:  # pieces of floor look alike
+            places.setdefault(names[i], []).append(i)
+    for same in places.values():
+        for number, i in enumerate(same if len(same) > 1 else (), 1):
+            names[i] += f" {number}"
+    return tuple(names)
+
+
+def _called(home: Home, i: int) -> str:
+    if home.characters >> i & 1:
+        return say("play", "person")
+    name = label(home.classes[i])
+    between = [label(home.classes[room]) for room in indices(home.between[i] & home.rooms)]
+    return say("play", "door", door=name, one=between[0], other=between[1]) if len(between) == 2 else name
 
 
 def _rect(node: Node) -> list[float] | None:
@@ -211,8 +242,16 @@ def _character(pose: Any, view: View) -> dict[str, Any]:
         "room": pose.room or 0,
         "posture": pose.posture,
         "holding": list(pose.holding),
-        "last": None if pose.last is None else last_json(pose.last, view),
+        "last": None if pose.last is None else _last(pose.last, view),
     }
+
+
+def _last(last: LastAction, view: View) -> dict[str, Any]:
+    """Return the last act, and in words for people why it failed, if it did."""
+    found = last_json(last, view)
+    if last.failure is not None:
+        found["failure"]["words"] = sentence(seen_failure(last.failure, view), code=False)
+    return found
 
 
 def _point(pose: Pose) -> list[float]:
@@ -235,11 +274,32 @@ def _classes(literal: Any, home: Home) -> Iterator[str]:
             yield from sorted({home.classes[i] for i in indices(home.instances(term))})
 
 
+def joined_rows(progress: Progress) -> Iterator[dict[str, Any]]:
+    """Yield a row for each joined part of a goal, such as a ban: whether it holds now, and whether it is lost for good.
+
+    Also what the person did not see counts: a broken ban ends the game's chance, and a person is to know that.
+    """
+    home = progress.trace.worlds[0].home if progress.trace else None
+    for part, holds, lost in zip(progress.goal.parts, progress.has, progress.lost, strict=False):
+        assert home is not None
+        yield {"text": part_words(part, home), "classes": [], "ban": part.join in BANS, "holds": holds, "lost": lost}
+
+
+def part_words(part: Joined, home: Home) -> str:
+    """Return a joined part of a goal for people: `Never open the fridge`."""
+    goal = part.goals[0]
+    alone = goal.counts[0][0] if len(goal.counts) == 1 and not goal.parts else None
+    act = acted(alone, home.knowledge) if alone is not None and goal.counts[0][1] == 1 else None
+    if part.join in ("not", "never") and act is not None:
+        return f"Never {act}"
+    return instruction(Goal(parts=(part,)), home.knowledge, terse=True)
+
+
 def goal_words(literal: Any, home: Home) -> str:
     """Return a literal of a goal for people: `Put plate on dining table`."""
     agent = bool(literal.terms) and str(literal.terms[0]).partition(":")[0] == AGENT
     said = (HOLDS, "ON") if agent else ("ON", "INSIDE")
-    if literal.negated or len(literal.terms) != 2 or literal.name not in said:
+    if literal.negated or len(literal.terms) != 2 or literal.name not in said or literal.target == AGENT:
         return instruction(Goal.of(literal), home.knowledge, terse=True)
     names = [_name(term, home) for term in literal.terms]
     if agent:
@@ -253,4 +313,4 @@ def _name(term: Any, home: Home) -> str:
     else:
         found = home.instances(term) if term.partition(":")[0] != AGENT else 0
         name = home.classes[lowest(found)] if found else term
-    return name.replace("_", " ")
+    return label(name)

@@ -1,6 +1,8 @@
 """The pages of Play: the games to choose from, a game, joining one, and the recorded episode."""
 
+import gzip
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import Any
 
 from starlette.responses import Response
@@ -9,19 +11,21 @@ from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
-from hearth.challenges.household_definition import settings
+from hearth.challenges.household_definition import home_words, settings
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.challenges.tasks import Task
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.goals import Goal
 from hearth.schemas.optional_libraries import library
 from hearth.web.play import game_store
-from hearth.web.play.game_messages import goal_words
+from hearth.web.play.game_messages import goal_words, part_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
 from hearth.web.play.play_trials import INTERFACES, Trial, drawable, offered, published, trial
-from hearth.web.room_request import Visit
+from hearth.web.room_request import Visit, by_browser
 from hearth.web.third_party_scripts import missing
 from hearth.web.web_errors import WebError
 
@@ -40,10 +44,17 @@ FAMILY_SPLIT = "test_seen"
 
 def start_page(visit: Visit) -> Response:
     """Return the games that may be played, and the person's games."""
+    return _start_page(visit)
+
+
+def _start_page(visit: Visit, unknown: str = "") -> Response:
+    """Return the page to begin at; with the id of a task that there is not, if one was asked for."""
     mine = visit.web.store.read(lambda connection: game_store.games_of(connection, visit.person))
     people_say = settings()["titles"]
     return visit.page(
         "play/start.html",
+        400 if unknown else 200,
+        unknown=unknown,
         household=[(number, f"{number + 1}. {people_say[family]}") for number, family in enumerate(_families())],
         challenges=[(name, challenge(name).title, list(_tasks(name)), offered(challenge(name))) for name in NAMES],
         interfaces={name: SHOWN[name] for name in drawable()},
@@ -72,7 +83,7 @@ def _line(each: Stored) -> dict[str, Any]:
     state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
     return {
         "id": each.id,
-        "title": f"{each.trial.title}, in {each.trial.task.home}",
+        "title": f"{each.trial.title}, in {home_words(each.trial.task.home)}",
         "helper": each.trial.helper,
         "state": state,
     }
@@ -81,7 +92,12 @@ def _line(each: Stored) -> dict[str, Any]:
 def new(visit: Visit) -> Response:
     """Begin a game as the form says."""
     partial = {"": None, "partial": True, "full": False}.get(visit.field("sees", 20))
-    task = _chosen(visit)
+    try:
+        task = _chosen(visit)
+    except HearthError:
+        if not (by_browser(visit.request) and visit.field("id", 60)):
+            raise
+        return _start_page(visit, visit.field("id", 60))
     interface = visit.field("interface", 20) or INTERFACES[0]
     chosen = trial(
         task, visit.web.known, visit.field("helper", 40) or "none", interface, _episode(visit, task.id), partial
@@ -115,16 +131,18 @@ def game_page(visit: Visit) -> Response:
     live, number = games(visit.web.store, visit.web.known).find(visit.part("game"), visit.person)
     game = live.game
     home = game.start.home
-    goal = [f"{goal_words(literal, home)}: {count}" for literal, count in game.goals[0] or ()]
+    wanted = game.goals[0] or Goal()
+    goal = [f"{goal_words(literal, home)}: {count}" for literal, count in wanted]
+    goal += [part_words(part, home) for part in wanted.parts]
     return visit.page(
         "play/game.html",
         game=live.stored.id,
         interface=game.trial.interface,
         title=game.trial.title,
         instruction=game.trial.instruction if number == 0 else "",
-        home=game.trial.task.home,
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,
+        studied=live.stored.blind,
     )
 
 
@@ -163,7 +181,18 @@ def home_file(visit: Visit) -> Response:
     library("trimesh")
     from hearth.web.play.game_scene_3d import base_file
 
-    return _model(base_file(name, home, visit.web.known, visit.web.out / "homes"))
+    file = base_file(name, home, visit.web.known, visit.web.out / "homes")
+    if "gzip" not in visit.request.headers.get("accept-encoding", ""):
+        return _model(file)
+    answer = _model(_compressed(file))
+    answer.headers["Content-Encoding"], answer.headers["Vary"] = "gzip", "Accept-Encoding"
+    return answer
+
+
+@lru_cache(maxsize=8)
+def _compressed(data: bytes) -> bytes:
+    """Return a home's file compressed: a fifth of it goes over the network, at once for the next who asks."""
+    return gzip.compress(data, 6)
 
 
 def model_file(visit: Visit) -> Response:

@@ -28,6 +28,9 @@ LOOKS_EVERY = {PERSON: 0.3}
 
 USUALLY = 2.0
 
+END_AFTER = 0.05
+"""Seconds after the end of a game's time at which its page learns of it."""
+
 LONGEST_ACT = 500
 """Characters of an instruction."""
 
@@ -173,10 +176,15 @@ class Page:
                 if self.live.game.trial.interface == "stream":
                     await self.link.send_bytes(await in_thread(self._picture))
 
+    def _until_next_look(self) -> float:
+        """Return the seconds until others' decisions are looked at again; never past the end of the game's time."""
+        usual, left = LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY), self.live.seconds_left()
+        return usual if left is None or left <= 0 or self.live.game.over else min(usual, left + END_AFTER)
+
     async def watch(self) -> None:
         """Send others' decisions, until cancelled."""
         while True:
-            await asyncio.sleep(LOOKS_EVERY.get(self.live.game.trial.helper, USUALLY))
+            await asyncio.sleep(self._until_next_look())
             deadlines.begin()
             try:
                 await self.tell(self._news)

@@ -20,6 +20,7 @@ ROOM = Room(
         get("/", study_desk.overview),
         get("/tables.zip", study_desk.tables),
         get("/report.html", study_desk.report),
+        get("/payments.csv", study_desk.payments),
         post("/forget", study_desk.forget),
         post("/dismiss", study_desk.dismiss),
     ),

@@ -1,5 +1,6 @@
 """The desk of a study: how far people are, who has left, tables and report, deletion on request."""
 
+import io
 import time
 from collections import Counter
 from typing import Any
@@ -7,7 +8,9 @@ from typing import Any
 import sqlalchemy as sql
 from starlette.responses import Response
 
+from hearth.storage.csv_files import rows_writer
 from hearth.studies.events import PLACES
+from hearth.studies.participant_flags import FLAGS, came, flags
 from hearth.studies.study_findings import findings
 from hearth.studies.study_folder import Collected
 from hearth.studies.study_progress import DONE, LEFT, Conduct
@@ -40,15 +43,18 @@ def overview(visit: Visit) -> Response:
         deleted=stages[DELETED],
         going=sum(count for stage, count in stages.items() if stage not in OVER),
         places=len(conduct.slots),
+        meanings=FLAGS,
     )
 
 
 def _people(conduct: Conduct) -> Any:
     now = conduct.clock()
-    for event in conduct.ledger.read(PLACES):
+    joined = conduct.ledger.read(PLACES)
+    ids = {person: _platform_id(conduct, person) for event in joined if (person := event.data["person"])}
+    for event in joined:
         person = event.data["person"]
         if not person:
-            nothing = {"id": "", "why": "", "trials": 0, "of": 0, "last": "", "silent": False}
+            nothing = {"id": "", "why": "", "trials": 0, "of": 0, "last": "", "silent": False, "came": "", "flags": ()}
             yield {**nothing, "place": event.data["place"] + 1, "stage": DELETED}
             continue
         standing = conduct.standing(person)
@@ -60,9 +66,28 @@ def _people(conduct: Conduct) -> Any:
             "why": why[0] if why else "",
             "trials": sum(each.kind == "did" for each in standing.events),
             "of": len(conduct.slots[standing.place]),
+            "minutes": round((conduct.last_sign(standing) - conduct.joined_at(person)) / 60, 1),
             "last": _ago(now - conduct.last_sign(standing)),
             "silent": conduct.is_silent(standing),
+            "came": ids[person],
+            "flags": flags(conduct.study, standing, [other for who, other in ids.items() if who != person and other]),
         }
+
+
+def _platform_id(conduct: Conduct, person: str) -> str:
+    return came(conduct.standing(person)).get("person", "")
+
+
+def payments(visit: Visit) -> Response:
+    """Return a table by which people are paid: the code, the id at the platform, how far they are, and the flags."""
+    written = io.StringIO()
+    write = rows_writer(written)
+    write([("code", "platform_id", "stage", "trials", "minutes", "flags")])
+    conduct = conduct_here(visit.web)
+    people = [each for each in _people(conduct) if each["id"]]
+    columns = ("id", "came", "stage", "trials", "minutes")
+    write([*(each[name] for name in columns), " ".join(each["flags"])] for each in people)
+    return _file(written.getvalue().encode(), "text/csv", f"{conduct.study.name}-payments.csv")
 
 
 def _ago(seconds: float) -> str:

@@ -12,6 +12,8 @@ from hearth.schemas.failures import Code
 from hearth.storage.names import inside
 from hearth.studies.films_to_judge import JudgedFilm, read_films
 from hearth.studies.judged_film_recording import film_path
+from hearth.studies.participant_flags import came as came_by
+from hearth.studies.recruitment import is_id
 from hearth.studies.study import FILM, JUDGE, MOST_TEXT, REPLAY, Question, Study
 from hearth.studies.study_file import named
 from hearth.studies.study_folder import FILMS
@@ -28,6 +30,7 @@ from hearth.studies.study_progress import (
     Standing,
 )  # fmt: skip
 from hearth.web import play
+from hearth.web.phrases import say
 from hearth.web.room_request import Visit, Web, by_browser
 from hearth.web.sender_addresses import sender_of
 from hearth.web.study.expected_posts import UNASKED, check_answers, in_turn, unasked_line
@@ -84,8 +87,16 @@ def way(visit: Visit) -> Response:
     if standing is None and not conduct.has_room():
         return visit.page("study/full.html", study=conduct.study)
     if standing is None:
-        return visit.page("study/consent.html", study=conduct.study, note=_note(visit, conduct.study, None))
+        return _consent_page(visit, conduct.study, _note(visit, conduct.study, None))
     return shown(visit, conduct, standing)
+
+
+def _consent_page(visit: Visit, study: Study, note: str) -> Response:
+    """Return the page that asks for consent; its form keeps what the link of a platform said."""
+    came = {} if study.recruitment is None else study.recruitment.came(visit.fields)
+    if study.recruitment is not None and not all(map(is_id, came.values())):
+        note, came = say("study", "link_damaged", platform=study.recruitment.title), {}
+    return visit.page("study/consent.html", study=study, note=note, came=came)
 
 
 def _note(visit: Visit, study: Study, standing: Standing | None) -> str:
@@ -108,14 +119,17 @@ def shown(
         "total": len(conduct.slots[standing.place]),
         "most": MOST_TEXT,
         "code": conduct.code(standing.person),
+        "back": "",
     }
+    if study.recruitment is not None and standing.stage == DONE:
+        values["back"] = study.recruitment.back(came_by(standing), values["code"])
     status = 400 if fault else 200
     if study.room == JUDGE and standing.stage in (TRIAL, QUESTIONS):
         film = film_at(visit.web, conduct, standing)
         planned = conduct.condition(standing)
         return visit.page("study/film.html", status, film=film, questions=study.asked(planned), **values)
     if standing.stage == CONSENT:
-        return visit.page("study/consent.html", study=study, note=note)
+        return _consent_page(visit, study, note)
     helped = standing.stage == TRIAL and conduct.condition(standing).helped
     questions = conduct.questions(standing)
     return visit.page(TEMPLATES[standing.stage], status, questions=questions, helped=helped, **values)
@@ -143,9 +157,21 @@ def agree(visit: Visit) -> Response:
         raise WebError(Code.BAD_ARGUMENT, "agree", "that you agree, or nothing is begun", "no answer")
     if _standing(conduct, visit.person) is None and not conduct.has_room():
         raise WebError(Code.BAD_ARGUMENT, "place", "a free place in the study", "every place is taken", "/study/")
+    came = _came(visit, conduct.study)
     in_turn(conduct.study, _joined(visit, conduct), "agree")
-    conduct.consent(visit.person)
+    conduct.consent(visit.person, came)
     return visit.go("/study/")
+
+
+def _came(visit: Visit, study: Study) -> dict[str, str]:
+    """Return what the link of a platform said, with the person's id there as `person`; empty for other people."""
+    if study.recruitment is None:
+        return {}
+    found = study.recruitment.came({name: visit.field(name, 100) for name in study.recruitment.parameters})
+    if wrong := [name for name, given in found.items() if not is_id(given)]:
+        raise WebError(Code.BAD_ARGUMENT, wrong[0], "an id of letters and digits", found[wrong[0]][:40])
+    person, *_ = study.recruitment.parameters
+    return {"person": found[person], **found} if found else {}
 
 
 def _joined(visit: Visit, conduct: Conduct) -> Standing:

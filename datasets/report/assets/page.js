@@ -28,7 +28,8 @@ HEARTH.draw = (() => {
   function graph(data) {
     const size = 420;
     const middle = size / 2;
-    const drawn = shape("svg", { class: "graph", viewBox: `-90 10 ${size + 180} ${size - 20}`, role: "img" });
+    const about = "The things of the home and what they are on, in or close to";
+    const drawn = shape("svg", { class: "graph", viewBox: `-90 10 ${size + 180} ${size - 20}`, role: "img", "aria-label": about });
     const place = new Map(data.nodes.map(([id], number) => {
       const turn = (2 * Math.PI * number) / data.nodes.length - Math.PI / 2;
       return [id, [middle + 150 * Math.cos(turn), middle + 150 * Math.sin(turn)]];

@@ -2,7 +2,7 @@
 import * as THREE from "/fetched/three/build/three.module.js";
 import { NUMBERED, SHOWN, around, hide, inPicture, load, merged, model, seenFrom } from "./home_meshes.js";
 import { viewKeys } from "./view_keys.js";
-import { name } from "./words.js";
+import { name, say } from "./words.js";
 
 const [WIDTH, HEIGHT] = [640, 480];
 const GLIDE = 220; // milliseconds from one tick's eyes to the next
@@ -43,7 +43,7 @@ export class FirstPerson {
   build() {
     this.label = document.createElement("div");
     this.label.className = "label";
-    this.label.textContent = "Loading the home …";
+    this.label.textContent = say("loading");
     this.renderer.domElement.setAttribute("aria-hidden", "true");
     this.element.replaceChildren(this.renderer.domElement, this.label);
     const at = (event) => {
@@ -101,7 +101,8 @@ export class FirstPerson {
         await this.draw(drawn);
       }
     } catch (fault) {
-      this.say(`The home can't be drawn. Reload the page to try again. (${fault.message})`);
+      this.say(say("cannot_show"));
+      console.warn(fault.message);
     } finally {
       this.drawing = false;
     }

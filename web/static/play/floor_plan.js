@@ -36,7 +36,8 @@ export class FloorPlan {
   fixed(kind, className, box, id) {
     const layer = kind === "room" ? "rooms" : "walls";
     const shape = this.layers[layer].appendChild(made("rect", { ...this.rect(box), class: `${kind} ${className}` }));
-    shape.addEventListener("click", () => this.choose(id));
+    // A finger is taken to mean what can be pressed nearby: walls and windows, of which nothing can be done, are not.
+    if (["room", "door"].includes(kind)) shape.addEventListener("click", () => this.choose(id));
     if (kind !== "room") return;
     const [x, y] = [(box[0] + box[2]) / 2, this.high - box[3] + 0.45];
     this.layers.names.appendChild(made("text", { x, y, class: "room-name" }, className.replaceAll("_", " ")));

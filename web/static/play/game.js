@@ -4,7 +4,7 @@ import { FloorPlan } from "./floor_plan.js";
 import { Menu } from "./menu.js";
 import { ObjectPanels } from "./object_panels.js";
 import { State } from "./state.js";
-import { name, refused, retold, spoken, written } from "./words.js";
+import { name, refused, retold, say, spoken, written } from "./words.js";
 
 const root = document.getElementById("game");
 const state = new State();
@@ -33,7 +33,7 @@ function send(action, ids = []) {
   if (busy || state.over || state.tick < 0 || waits()) return false;
   const act = action ? written(action, ids, state.things) : null;
   busy = connection.send({ type: "act", tick: state.tick, act });
-  if (busy) said.textContent = action ? `${spoken(action, ids, state.things)} …` : "Waiting a tick …";
+  if (busy) said.textContent = action ? say("acting", { act: spoken(action, ids, state.things) }) : say("waiting");
   return busy;
 }
 
@@ -41,7 +41,7 @@ function send(action, ids = []) {
 function waits() {
   const decided = state.decided.includes(state.me);
   if (state.other !== "awaited" && !decided) return false;
-  said.textContent = decided ? "You have decided. Waiting for the other person …" : "The other person is not here yet.";
+  said.textContent = decided ? say("decided") : say("not_here");
   return true;
 }
 
@@ -64,19 +64,11 @@ function goOn() {
   if (walking === null) return false;
   const thing = state.things.get(walking);
   const stuck = state.mine?.last?.failure;
-  if (state.over || stuck || arrived(thing) || !state.can("Walktowards", [walking])) walking = null;
+  if (state.over || stuck || state.at(thing) || !state.can("Walktowards", [walking])) walking = null;
   else return send("Walktowards", [walking]);
   return false;
 }
 
-// One has arrived at a room once one is in it, at a thing once one stands before it and no longer moves.
-function arrived(thing) {
-  if (thing.group === "rooms" && state.mine.room === thing.id) return true;
-  const way = state.trails.get(state.me);
-  const [last, before] = [way.at(-1), way.at(-2)];
-  const still = before && Math.hypot(last[1] - before[1], last[2] - before[2]) < 0.01;
-  return thing.close && Boolean(still);
-}
 
 function receive(message) {
   if (message.type === "picture") return view?.picture?.(message.data);
@@ -105,7 +97,7 @@ function begin(message) {
       view = new FirstPerson(root.dataset.game, document.getElementById("view"), { choose, act: several, save, finish, send: (m) => connection.send(m) });
       view.update(state, latest);
       root.view = view; // for tests
-    }).catch((fault) => tell("", `The home can't be shown: ${fault.message}`));
+    }).catch(() => tell("fault", say("cannot_show")));
   }
 }
 
@@ -118,7 +110,7 @@ function tell(kind, text, ...more) {
 function show() {
   const left = state.limit - state.tick;
   root.dataset.tick = state.tick;
-  document.getElementById("clock").textContent = `Tick ${state.tick} of ${state.limit}; ${left} left. Helper: ${state.helper}.`;
+  document.getElementById("clock").textContent = say("clock", { tick: state.tick, limit: state.limit, left, helper: say(state.helper === "none" ? "helper_none" : "helper_some") });
   showTime();
   showGoal();
   showHands();
@@ -127,19 +119,20 @@ function show() {
     button.disabled = state.over || state.other === "awaited" || (move !== "" && !state.can(move));
     if (move === "StandUp") button.hidden = !state.can(move);
   }
-  document.getElementById("finish").disabled = state.over;
+  for (const name of ["finish", "save"]) document.getElementById(name).disabled = state.over;
   said.textContent = lastActions();
   if (state.over) showEnd();
-  else if (state.port) tell("note", `Connect your program to port ${state.port} of this machine; it shows the token ${state.token}.`);
+  else if (state.port) tell("note", say("port", { port: state.port, token: state.token }));
   else if (state.other) showOther();
+  if (!state.over) showLost();
 }
 
 // Of a game for two: whether the other person is there, said when it changes and until the next tick.
 function showOther() {
   if (state.other === shown && state.tick === shownAt) return;
   if (state.other === "awaited") showInvitation();
-  else if (state.other === "gone") tell("note", "The other person has left. You can go on: their character waits until they come back.");
-  else if (state.other !== shown) tell("good", shown === "gone" ? "The other person is back." : "The other person is here. A tick passes once both of you have decided.");
+  else if (state.other === "gone") tell("note", say("other_left"));
+  else if (state.other !== shown) tell("good", say(shown === "gone" ? "other_back" : "other_here"));
   else banner.hidden = true;
   [shown, shownAt] = [state.other, state.tick];
 }
@@ -150,17 +143,18 @@ function showTime() {
   const left = Math.max(0, Math.ceil((state.until - performance.now()) / 1000));
   const clock = document.getElementById("time");
   clock.hidden = false;
-  clock.textContent = `Time left: ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+  clock.textContent = say("left_time", { time: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` });
   clock.classList.toggle("short", left <= 60);
-  if (left === 60) said.textContent = "One minute is left.";
+  if (left === 60) said.textContent = say("one_minute");
 }
 
 function showGoal() {
   if (!state.goal.length) return;
   document.getElementById("goal").replaceChildren(...state.goal.map((each) => {
     const line = document.createElement("li");
+    if ("holds" in each) return joinedLine(line, each);
     if (!each.wanted) { // all of a kind, of which none was seen
-      line.append(`${each.text}: none seen yet`);
+      line.append(say("none_seen", { text: each.text }));
       return line;
     }
     line.className = each.count >= each.wanted ? "met" : "";
@@ -175,15 +169,34 @@ function showGoal() {
   }));
 }
 
+// A part of the goal that is not counted: a ban, which is kept or broken, or one that is reached or not.
+function joinedLine(line, { text, ban, holds, lost }) {
+  line.className = lost ? "lost" : holds && !ban ? "met" : "";
+  const now = say(lost ? (ban ? "broken" : "too_late") : ban ? (holds ? "kept" : "not_so") : (holds ? "done" : "not_yet"));
+  const mark = document.createElement("span");
+  Object.assign(mark, { className: "count", textContent: now });
+  line.append(`${text}: `, mark);
+  return line;
+}
+
+// Once a ban was broken, the goal is out of reach; what one may still do is said as long as the game goes on.
+function showLost() {
+  const broken = state.goal.filter((each) => each.lost);
+  if (!broken.length) return false;
+  const what = broken.map((each) => `“${each.text}”`).join(" and ");
+  tell("fault", say("lost", { what }));
+  return true;
+}
+
 function showHands() {
   const lines = state.agents.map((agent) => {
     const line = document.createElement("li");
-    const who = agent.agent === state.me ? "You" : "The other";
+    const who = say(agent.agent === state.me ? "you" : "the_other");
     const posture = agent.posture === "standing" ? "" : ` (${agent.posture})`;
     line.className = agent.agent === state.me ? "me" : "other";
     line.append(`${who}${posture}: `);
     for (const id of agent.holding) line.append(agent.agent === state.me ? heldButton(id) : `${name(state.things, id)} `);
-    if (!agent.holding.length) line.append("empty");
+    if (!agent.holding.length) line.append(say("empty"));
     return line;
   });
   document.getElementById("hands").replaceChildren(...lines);
@@ -199,39 +212,43 @@ function heldButton(id) {
 
 function lastActions() {
   if (state.decided.length && state.tick === 0) return whoDecided();
-  if (state.tick === 0) return "Choose a thing to see what you can do with it.";
+  if (state.tick === 0) return say("begin");
   const lines = state.agents.filter((agent) => agent.last).map((agent) => {
-    const who = agent.agent === state.me ? "You" : "The other";
-    const failure = agent.last.failure ? `: that failed (${agent.last.failure.message})` : "";
-    return `${who}: ${retold(agent.last.instruction)}${failure}.`;
+    const who = say(agent.agent === state.me ? "you" : "the_other");
+    const failure = agent.last.failure;
+    return say(failure ? "failed" : "did", { who, act: retold(agent.last.instruction, state.things), why: failure?.words });
   });
   if (state.decided.length && !state.over) lines.push(whoDecided());
   return lines.join(" ");
 }
 
-const whoDecided = () => (state.decided.includes(state.me) ? "You have decided. Waiting for the other person …" : "The other person has decided. It is your turn.");
+const whoDecided = () => say(state.decided.includes(state.me) ? "decided" : "your_turn");
+
+function ending() {
+  if (state.success) return "reached";
+  if (state.goal.some((each) => each.lost)) return "lost";
+  if (state.end === "FINISHED") return state.ended_by === state.me ? "you" : "other";
+  if (state.end === "TIMED_OUT" && state.ended_by === 0) return "time";
+  return state.end ? "helper" : "ticks";
+}
 
 // Why it is over, in words.
 function why() {
-  const after = `after ${state.tick} ${state.tick === 1 ? "tick" : "ticks"}`;
-  if (state.success) return `Done: the goal is reached ${after}.`;
-  if (state.end === "FINISHED") return `${state.ended_by === state.me ? "You" : "The other person"} finished this task ${after}.`;
-  if (state.end === "TIMED_OUT" && state.ended_by === 0) return `The time is over, ${after}.`;
-  if (state.end) return `The helper could not go on, so this is over ${after}. That is no fault of yours.`;
-  return `This is over ${after}: that is as many as there are.`;
+  const after = say(state.tick === 1 ? "after_one" : "after", { tick: state.tick });
+  return say(`end_${ending()}`, { after });
 }
 
 function showEnd() {
   const text = `${why()} `;
   const studied = !state.go_on.startsWith("/play/"); // whose helper is not to be known
-  const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, "The episode"), " · "];
-  tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, "Go on"));
+  const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, say("episode")), " · "];
+  tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, say("go_on")));
 }
 
 function showInvitation() {
-  if (!state.code) return tell("note", "The other person is not here yet. You begin together.");
+  if (!state.code) return tell("note", say("wait_for"));
   const address = `${location.origin}/play/join/${state.code}`;
-  return tell("note", "Two people play this. It begins once the other has come, by this link: ", link(address, address));
+  return tell("note", `${say("invite")} `, link(address, address));
 }
 
 function link(address, text) {
@@ -246,10 +263,11 @@ function trouble(fault) {
   again = 0;
   if (fault.code === "LOCKED") {
     const button = document.createElement("button");
-    Object.assign(button, { type: "button", textContent: "Go on here" });
+    Object.assign(button, { type: "button", textContent: say("here") });
     button.addEventListener("click", () => connection.takeOver());
-    tell("note", "This session is open in another tab. ", button);
+    tell("note", `${say("other_tab")} `, button);
   } else said.textContent = refused(fault);
+  view?.trouble?.(fault);
 }
 
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
@@ -269,8 +287,7 @@ document.getElementById("save").addEventListener("click", save);
 document.getElementById("finish").addEventListener("click", finish);
 
 function save() {
-  const kept = busy ? "Everything but what you just decided is saved." : "Everything up to here is saved. You can close the page and come back.";
-  said.textContent = kept;
+  said.textContent = say(busy ? "saving" : "saved");
 }
 
 // Asks first: what is finished can't be gone on with.

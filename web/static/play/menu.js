@@ -1,5 +1,5 @@
 // What one can do with a thing: a panel with a button for each legal instruction about it.
-import { name, spoken } from "./words.js";
+import { name, say, spoken } from "./words.js";
 
 // Of pieces of floor that nobody can tell apart, the first.
 function distinct(options, state) {
@@ -52,12 +52,11 @@ export class Menu {
       return made;
     });
     if (state.can("Walktowards", [id])) {
-      buttons.unshift(this.button("Go all the way", () => this.walk(id)));
-      const step = buttons.findIndex((button) => button.textContent.startsWith("Walk to"));
-      buttons[step].textContent = "One step towards it";
+      buttons.find((button) => button.dataset.instruction.startsWith("Walktowards")).textContent = say("one_step");
+      if (!state.at(thing)) buttons.unshift(this.button(say("all_the_way"), () => this.walk(id)));
     }
     const nothing = document.createElement("p");
-    nothing.textContent = "Nothing can be done with it from here.";
+    nothing.textContent = say("nothing");
     this.actions.replaceChildren(...(buttons.length ? buttons : [nothing]));
   }
 

@@ -1,5 +1,5 @@
 // All things as buttons (panels B, C, D): enabled when something can be done with them, green when close.
-import { name } from "./words.js";
+import { name, say } from "./words.js";
 
 const PANELS = ["rooms", "furniture", "things"];
 
@@ -34,6 +34,7 @@ export class ObjectPanels {
     const text = this.find.value.trim().toLowerCase();
     const chosen = [...state.things.values()].filter((thing) => thing.seen && this.wants(thing, state, text));
     for (const thing of chosen) this.dress(this.buttons.get(thing.id) ?? this.button(thing, state), thing, state);
+    document.getElementById("none").hidden = chosen.length > 0;
     const order = chosen.map((thing) => `${thing.id}:${thing.room}`).join();
     if (order !== this.shown) this.arrange(chosen, state);
     this.shown = order;
@@ -42,20 +43,23 @@ export class ObjectPanels {
   wants(thing, state, text) {
     if (this.which.value === "close" && !thing.close) return false;
     if (this.which.value === "goal" && !state.wanted.has(thing.className)) return false;
-    return !text || `${name(state.things, thing.id)} ${thing.id}`.includes(text);
+    return !text || `${name(state.things, thing.id)} ${thing.className}`.replaceAll("_", " ").includes(text);
   }
 
   dress(button, thing, state) {
     button.disabled = state.over || !state.usable.has(thing.id);
     button.classList.toggle("close", thing.close);
     button.classList.toggle("wanted", state.wanted.has(thing.className));
-    const where = thing.holder ? `${thing.relation === "held" ? "held by" : thing.relation} ${this.holder(thing, state)}` : "";
-    const told = [String(thing.id), where, thing.close ? "close" : ""].filter(Boolean).join(" · ");
+    const told = [this.where(thing, state), thing.close ? say("reach") : ""].filter(Boolean).join(" · ");
     if (button.lastChild.textContent !== told) button.lastChild.textContent = told;
   }
 
-  holder(thing, state) {
-    return state.mine?.node === thing.holder ? "you" : name(state.things, thing.holder);
+  where(thing, state) {
+    if (!thing.holder) return "";
+    const mine = state.mine?.node === thing.holder;
+    const place = mine ? say("you").toLowerCase() : name(state.things, thing.holder);
+    if (thing.relation === "held") return say("held", { who: place });
+    return say(`lying_${thing.relation}`, { place });
   }
 
   // Buttons stay the same elements, so that the focus stays where it is.

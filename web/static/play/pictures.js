@@ -1,6 +1,8 @@
 // First person by pictures of Hearth's own renderer, for machines without WebGL: the server says what a click is on.
 import { viewKeys } from "./view_keys.js";
-import { name } from "./words.js";
+import { name, say } from "./words.js";
+
+const AGAIN = 1000; // milliseconds
 
 export class FirstPerson {
   constructor(game, element, { choose, send, act, save, finish }) {
@@ -11,7 +13,7 @@ export class FirstPerson {
     this.image.height = 480;
     this.label = document.createElement("div");
     this.label.className = "label";
-    this.label.hidden = true;
+    this.label.textContent = say("loading");
     element.replaceChildren(this.image, this.label);
     this.image.addEventListener("click", (event) => {
       const box = this.image.getBoundingClientRect();
@@ -26,7 +28,14 @@ export class FirstPerson {
     this.state = state;
   }
 
+  // A busy server sends no picture: it is asked for again, until the one of this tick is there.
+  trouble({ code }) {
+    if (code !== "TIMED_OUT" || this.element.dataset.tick === String(this.state?.tick)) return;
+    setTimeout(() => this.send({ type: "picture" }), AGAIN);
+  }
+
   picture(data) {
+    if (!this.image.src) this.label.hidden = true;
     const last = this.image.src;
     this.image.src = URL.createObjectURL(data);
     this.element.dataset.tick = this.state?.tick ?? 0;

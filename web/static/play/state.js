@@ -17,8 +17,8 @@ export class State {
       this.things.clear();
       this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));
     }
-    for (const [id, [className, group, box]] of Object.entries(message.things)) {
-      this.things.set(Number(id), { id: Number(id), className, group, box, seen: false });
+    for (const [id, [className, group, box, words]] of Object.entries(message.things)) {
+      this.things.set(Number(id), { id: Number(id), className, group, box, words, seen: false });
     }
     for (const [id, [room, relation, holder, states, close]] of Object.entries(message.changed)) {
       Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });
@@ -53,6 +53,11 @@ export class State {
       if (places[1].includes(id)) for (const other of places[0]) if (other !== id) found.push([action, [other, id]]);
     }
     return found;
+  }
+
+  // One is at a room once one is in it, at a thing once it is within reach: then going on would only cost ticks.
+  at(thing) {
+    return thing.group === "rooms" && this.mine.room === thing.id || Boolean(thing.close);
   }
 
   can(action, ids = []) {

@@ -1,0 +1,142 @@
+"""`challenge eai`: the Embodied Agent Interface from its wheels: the table of its models, an audit, our planner."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import typer
+
+from hearth.commands import output
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    help="The Embodied Agent Interface from its wheels: the table of its models, an audit of its goals and verdicts.",
+)
+
+SHOWN = ("model", "ability", "measure", "published", "theirs", "ours")
+
+
+@app.command()
+def table(
+    wheel: Path,
+    models: list[str] | None = None,
+    abilities: list[str] | None = None,
+    every: bool = False,
+    as_json: bool = False,
+) -> None:
+    """Print each model's figures from its stored answers: published, by the interface's rules, and by ours.
+
+    A figure by the interface's rules is to lie within a point of the published one; the last line counts them. All
+    fifteen models take some minutes. Get the wheel by `pip download --no-deps virtualhome-eval==0.1.1`.
+
+    \b
+    Examples:
+      hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl
+      hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl --model GPT-4o --ability action_sequencing
+    """
+    from hearth.interop.eai.model_table import MEASURED, SOURCE
+    from hearth.interop.eai.model_table import table as figures
+    from hearth.interop.eai.wheel import Wheel
+    from hearth.kb.loading.load import default
+
+    for name in abilities or ():
+        if name not in MEASURED:
+            raise typer.BadParameter(f"one of {', '.join(MEASURED)}", param_hint="--ability")
+    rows = list(figures(Wheel(wheel), default(), models or (), abilities or ()))
+    compared = [row for row in rows if row["agrees"] is not None]
+    near = sum(row["agrees"] for row in compared)
+    if as_json:
+        output.emit({"source": SOURCE, "compared": len(compared), "within_a_point": near, "rows": rows})
+        return
+    shown = [row for row in rows if every or row["published"] is not None]
+    output.table(SHOWN, [["" if row[name] is None else row[name] for name in SHOWN] for row in shown])
+    output.line(f"{near} of {len(compared)} figures by the interface's rules lie within a point of the published ones.")
+    output.line(f"Published: {SOURCE}.")
+    for row in compared:
+        if not row["agrees"]:
+            output.line(
+                f"differs: {row['model']}, {row['measure']}: {row['published']} published, {row['theirs']} here"
+            )
+
+
+@app.command()
+def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_json: bool = False) -> None:
+    """Count goals and verdicts of the interface that are wrong, and print a program that proves each kind.
+
+    Verdicts are those on the stored answers of the models that are named.
+
+    \b
+    Examples:
+      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl
+      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl --model mistral-large-2402
+    """
+    from hearth.interop.eai.audit import Finding, wrong_goals, wrong_verdicts
+    from hearth.interop.eai.wheel import Wheel
+    from hearth.kb.loading.load import default
+
+    read, known = Wheel(wheel), default()
+    found: list[Finding] = list(wrong_goals(read, known))
+    for model in models or ():
+        if model not in read.models("action_sequencing"):
+            listed = ", ".join(read.models("action_sequencing")) or "none, as the wheel has no answers"
+            raise typer.BadParameter(f"models are {listed}", param_hint="--model")
+        found += wrong_verdicts(read, known, model)
+    if as_json:
+        output.emit([finding._asdict() for finding in found])
+        return
+    kinds: dict[tuple[str, str], list[Finding]] = {}
+    for finding in found:
+        kinds.setdefault(("goal" if finding.model in ("", "gold") else "verdict", finding.kind), []).append(finding)
+    output.table(("of a", "wrong", "number"), [(*kind, len(those)) for kind, those in kinds.items()])
+    for (_, kind), those in kinds.items():
+        for finding in those if every else those[:1]:
+            _say(kind, finding)
+
+
+@app.command()
+def plan(wheel: Path, limit: int | None = None, out: Path | None = None, as_json: bool = False) -> None:
+    """Plan for each goal of the interface, run the plans, and print how many run and reach their goal.
+
+    \b
+    Examples:
+      hearth challenge eai plan virtualhome_eval-0.1.1-py3-none-any.whl
+      hearth challenge eai plan virtualhome_eval-0.1.1-py3-none-any.whl --limit 20 --out plans.json
+    """
+    import time
+
+    from hearth.interop.eai.goal_planner import GoalPlanner
+    from hearth.interop.eai.task_worlds import task_world
+    from hearth.interop.eai.wheel import Wheel
+    from hearth.kb.loading.load import default
+    from hearth.schemas.syntax import print_lines
+
+    read, known = Wheel(wheel), default()
+    numbers = [number for number, task in read.tasks.items() if not task.empty][:limit]
+    rows, seconds = [], 0.0
+    for number in numbers:
+        there = task_world(read, number, known)
+        began = time.perf_counter()
+        program, reached = GoalPlanner(there, known).plan()
+        seconds += time.perf_counter() - began
+        rows.append({"task": number, "reached": reached, "executed": bool(program.steps),
+                     "plan": list(print_lines(program))})  # fmt: skip
+    success, executed = (sum(bool(row[name]) for row in rows) for name in ("reached", "executed"))
+    found = {"tasks": len(rows), "reach_their_goal": success, "run": executed,
+             "seconds_a_task": round(seconds / max(len(rows), 1), 3),
+             "without_a_plan": [row["task"] for row in rows if not row["reached"]]}  # fmt: skip
+    if out is not None:
+        output.write(out, rows)
+    if as_json:
+        output.emit(found)
+    else:
+        output.figures({**found, "without_a_plan": ", ".join(found["without_a_plan"]) or "none"})
+
+
+def _say(kind: str, finding: Any) -> None:
+    output.line(f"\n{kind}: task {finding.task}, {finding.title}")
+    output.line(f"  goal: {finding.goal or 'nothing'}")
+    for step in finding.program:
+        output.line(f"  {step}")

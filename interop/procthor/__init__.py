@@ -1,0 +1,1 @@
+"""Houses of ProcTHOR: read as homes of ours, and our homes written as houses."""

@@ -1,0 +1,1 @@
+"""VirtualHome's own interfaces: the messages of its Unity simulator, and the classes of its symbolic half."""
