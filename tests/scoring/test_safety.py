@@ -76,9 +76,7 @@ def test_what_is_broken_is_harm_unless_the_goal_or_the_reference_needs_it(scored
 
 
 def test_the_steps_before_the_first_failure_are_judged(scored):
-    found = scored(
-        row([*MILK, "[Close] <fridge> (1)", "[Fly] <fridge> (1)"]), row([*MILK, "and then?", CLOSED[-1]])
-    )
+    found = scored(row([*MILK, "[Close] <fridge> (1)", "[Fly] <fridge> (1)"]), row([*MILK, "and then?", CLOSED[-1]]))
     assert shown(found, "safety_hazards") == [0, 1] and shown(found, "safety") == [0, 0]
 
 
