@@ -13,6 +13,7 @@ from typing import TextIO, cast
 
 from hearth.agents.protocol import Agent, Choice
 from hearth.challenges.agent_standard_streams import check_descriptors
+from hearth.challenges.worker_guard import ended_after, unchanged
 from hearth.schemas.agent_messages import Message
 from hearth.schemas.agent_messages import read as read_message
 from hearth.schemas.diagnostics import Diagnostic, HearthError
@@ -112,8 +113,12 @@ class Guarded:
     @contextmanager
     def _watched(self) -> Iterator[None]:
         try:
-            with _keyboard_heeded(), _within(self.seconds), _streams_kept():
-                yield
+            with ended_after(self.seconds), _keyboard_heeded(), _within(self.seconds), _streams_kept(), unchanged():
+                try:
+                    yield
+                except BaseException as error:
+                    error.__traceback__ = None  # of an endless recursion it is too long to be kept
+                    raise
         except _Stopped:
             raise KeyboardInterrupt from None
         except _Late:
@@ -166,7 +171,7 @@ def refusing(place: str, seconds: float = SECONDS) -> Iterator[None]:
         HearthError: BAD_ARGUMENT, whatever that code raises.
     """
     try:
-        with _keyboard_heeded(), _within(seconds), _streams_kept():
+        with ended_after(seconds), _keyboard_heeded(), _within(seconds), _streams_kept(), unchanged():
             yield
     except _Stopped:
         raise KeyboardInterrupt from None

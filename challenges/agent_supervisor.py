@@ -25,10 +25,10 @@ class _Asked(BaseException):
     """Hearth asks for the end, or is gone."""
 
 
-def adopts_orphans() -> bool:
-    """Return whether this system gives orphans of descendants to this process, from now on."""
+def adopts_orphans(wanted: bool = True) -> bool:
+    """Return whether this system gives orphans of descendants to this process from now on, or no longer."""
     try:
-        return bool(ctypes.CDLL(None, use_errno=True).prctl(_SUBREAPER, 1, 0, 0, 0) == 0)
+        return bool(ctypes.CDLL(None, use_errno=True).prctl(_SUBREAPER, int(wanted), 0, 0, 0) == 0)
     except (OSError, AttributeError, TypeError):
         return False
 

@@ -13,6 +13,7 @@ from typing import Any
 from hearth.agents.agent_registry import HELPERS, MAIN, MainAgent
 from hearth.agents.online_helper_registry import ONLINE, PROPOSED
 from hearth.agents.protocol import Agent
+from hearth.challenges.agent_descendants import none_left
 from hearth.challenges.agent_guard import SECONDS, Guarded, refusing, say_unraisable
 from hearth.challenges.agent_standard_streams import StandardDescriptors
 from hearth.challenges.challenge_definition import Challenge, challenge
@@ -235,7 +236,8 @@ def need_class(place: str) -> None:
         HearthError: as of `load`; BAD_ARGUMENT: it ended its process.
     """
     try:
-        next(spread(_loaded, [place], 1, apart=True))
+        with none_left():
+            list(spread(_loaded, [place], 1, apart=True))
     except BrokenProcessPool as error:
         message = f"{place}: its process ended while the file was run"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="end no process in it") from error

@@ -6,16 +6,19 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
+from hearth.challenges.agent_descendants import none_left
 from hearth.challenges.behavior_counts import Columns
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episode_agents import is_own
 from hearth.challenges.episodes import Job, Record, played, start_of
 from hearth.challenges.metrics import outcome
+from hearth.llm.timed_connections import asking
 from hearth.pipelines.engine.dask_engine import DaskEngine
 from hearth.pipelines.engine.engines import engine as made
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.simulation.world.digest import digest
 from hearth.storage.parallel import spread
@@ -35,32 +38,42 @@ def here(workers: int) -> Spread:
         if jobs and jobs[0].lineup.language and not jobs[0].lineup.own:
             yield from _in_threads(jobs, workers)
             return
-        done, apart = 0, any(job.lineup.own for job in jobs)
-        while done < len(jobs):
-            try:
-                for record in spread(played, jobs[done:], workers, apart=apart):
-                    yield record
-                    done += 1
-            except BrokenProcessPool:
-                yield _alone(jobs[done])
-                done += 1
+        apart = any(job.lineup.own for job in jobs)
+        with none_left() if apart else nullcontext():
+            yield from _over_processes(jobs, workers, apart)
 
     return results
+
+
+def _over_processes(jobs: Sequence[Job], workers: int, apart: bool) -> Iterator[Record]:
+    done = 0
+    while done < len(jobs):
+        try:
+            for record in spread(played, jobs[done:], workers, apart=apart):
+                yield record
+                done += 1
+        except BrokenProcessPool:
+            yield _alone(jobs[done])
+            done += 1
+        except HearthError:
+            raise
+        except Exception:
+            if not apart:
+                raise
+            yield _alone(jobs[done])  # in a process that another episode has not changed
+            done += 1
 
 
 def _in_threads(jobs: Sequence[Job], workers: int) -> Iterator[Record]:
     """Play episodes of language models in threads, which mostly wait: they share a cache, a budget and connections."""
     rest = deque(jobs)
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(workers) as pool, asking(pool):
         waiting = deque(pool.submit(played, rest.popleft()) for _ in range(min(2 * workers, len(rest))))
-        try:
-            while waiting:
-                record = waiting.popleft().result()
-                if rest:
-                    waiting.append(pool.submit(played, rest.popleft()))
-                yield record
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
+        while waiting:
+            record = waiting.popleft().result()
+            if rest:
+                waiting.append(pool.submit(played, rest.popleft()))
+            yield record
 
 
 @contextmanager
@@ -109,14 +122,20 @@ def _alone(job: Job) -> Record:
         (record,) = spread(played, [job], 1, apart=True)
     except BrokenProcessPool:
         return _ended(job)
+    except HearthError:
+        raise
+    except Exception as error:
+        if not job.lineup.own:
+            raise
+        return _ended(job, f"its process, which it shares with us, failed by {type(error).__name__}")
     return record
 
 
-def _ended(job: Job) -> Record:
+def _ended(job: Job, message: str = "its process ended") -> Record:
     """Return the record of an episode whose process ends."""
     which, knowledge = challenge(job.task.challenge), job.known()
     number = 0 if is_own(job.lineup.main) or not job.helped else 1
-    end = {"agent": number, "code": str(Code.AGENT_FAILED), "message": "its process ended"}
+    end = {"agent": number, "code": str(Code.AGENT_FAILED), "message": message}
     goal = None if job.helper_goal is None else which.grammar.written(job.helper_goal)
     start = start_of(job.task, knowledge, None if job.helped else 1)
     metrics = outcome(which, False, 0, Columns()).as_json()

@@ -69,13 +69,53 @@ def close(things: Sequence[Thing]) -> np.ndarray:
     doorway = np.array([bool(thing.between) for thing in things])
     for members in _rooms(things).values():
         boxes = [things[i].box for i in members]
-        near = gaps(boxes, boxes) <= CLOSE_WITHIN + 1e-9
-        np.fill_diagonal(near, False)
-        found.append(np.array(members)[np.argwhere(near)])
+        found.append(np.array(members)[_near(boxes) if len(boxes) <= MATRIX else np.array([*_swept(boxes)], int)])
     pairs = np.concatenate(found)
     # A door and its jamb meet in both rooms.
     both = doorway[pairs].all(axis=1)
     return np.concatenate((pairs[~both], np.unique(pairs[both], axis=0)))
+
+
+MATRIX = 500
+"""Boxes up to which all pairs are compared at once; with more, only those that are side by side from west to east."""
+
+
+def _near(boxes: Sequence[Box]) -> np.ndarray:
+    """Return the pairs (pairs, 2) of boxes that are close."""
+    near = gaps(boxes, boxes) <= CLOSE_WITHIN + 1e-9
+    np.fill_diagonal(near, False)
+    return np.argwhere(near)
+
+
+def _swept(boxes: Sequence[Box]) -> Iterator[tuple[int, int]]:
+    """Yield the same pairs, by work in proportion to the boxes that overlap from west to east."""
+    for one, others in _beside(boxes):
+        for other in others:
+            yield from ((one, other), (other, one))
+
+
+def _beside(boxes: Sequence[Box]) -> Iterator[tuple[int, list[int]]]:
+    """Yield boxes, each with those that are close and begin further east."""
+    centers, halves = arrays(boxes)
+    west = centers[:, 0] - halves[:, 0]
+    order = np.argsort(west, kind="stable")
+    ends = np.searchsorted(west[order], (centers + halves)[order, 0] + CLOSE_WITHIN + 1e-6, side="right")
+    for place, (one, end) in enumerate(zip(order.tolist(), ends.tolist(), strict=True)):
+        later = order[place + 1 : end]
+        apart = np.abs(centers[later] - centers[one]) - (halves[later] + halves[one])
+        near = np.sqrt((np.maximum(apart, 0.0) ** 2).sum(axis=1)) <= CLOSE_WITHIN + 1e-9
+        yield one, later[near].tolist()
+
+
+def many_close(things: Sequence[Thing], most: int) -> int:
+    """Return how many CLOSE edges things have; the count ends soon after `most`."""
+    count = 0
+    for members in _rooms(things).values():
+        for _, others in _beside([things[i].box for i in members]):
+            count += 2 * len(others)
+            if count > most:
+                return count
+    return count
 
 
 def _rooms(things: Sequence[Thing]) -> dict[str, list[int]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+from ipaddress import ip_address
 from urllib.parse import SplitResult, parse_qsl, urlsplit
 
 from hearth.schemas.diagnostics import HearthError
@@ -79,6 +80,15 @@ def checked_url(url: str) -> str:
     if fields - HARMLESS or (parts.query and not fields) or parts.fragment:
         raise HearthError.of(Code.BAD_ARGUMENT, f"the address at {host} holds a query", suggestion=_REMEDY)
     return url.rstrip("/")
+
+
+def is_here(url: str) -> bool:
+    """Return whether an address is one of this machine: what is sent there passes no proxy."""
+    host = urlsplit(url).hostname or ""
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost" or host.endswith(".localhost")
 
 
 def key_for(url: str, variable: str = "") -> str:

@@ -11,15 +11,15 @@ from hashlib import blake2b
 from typing import Any
 from urllib.parse import urlsplit
 
-from hearth.llm.addresses import checked_url, key_for, read_name, without_key
+from hearth.llm.addresses import checked_url, is_here, key_for, read_name, without_key
 from hearth.llm.answer_cache import AnswerCache, Spent
 from hearth.llm.language_settings import Asking, Means
 from hearth.llm.purse import Purse
 from hearth.llm.replies import Reply, read_reply
 from hearth.llm.requests_with_retries import Failed, post, with_retries
+from hearth.llm.timed_connections import client, pause
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.optional_libraries import library
 
 Message = Mapping[str, Any]
 """A message of a chat: `role` and `content`."""
@@ -65,7 +65,7 @@ class Endpoint:
         means: Means | None = None,
         *,
         client: Client | Any = None,
-        sleep: Callable[[float], None] = time.sleep,
+        sleep: Callable[[float], None] = pause,
     ) -> None:
         self.url = OWN if client is not None else checked_url(url)
         self.model, self.asking, self.means = model, asking or Asking(), means or Means()
@@ -187,7 +187,7 @@ class Endpoint:
             headers["authorization"] = f"Bearer {self._key}"
         self.sent += 1
         try:
-            data = post(_http(), self._chat_url, _dumped(given), headers, self.means.seconds)
+            data = post(_http(is_here(self.url)), self._chat_url, _dumped(given), headers, self.means.seconds)
             return orjson.loads(data)
         except orjson.JSONDecodeError:
             raise Failed("not JSON", "the reply is not JSON") from None
@@ -228,10 +228,13 @@ def _dumped(value: Any) -> bytes:
     return orjson.dumps(value, option=orjson.OPT_SORT_KEYS)
 
 
-@lru_cache(maxsize=1)
-def _http() -> Any:
-    """Return the client for all servers of this process; proxies of the environment are used, redirections are not."""
-    return library("httpx2").Client(follow_redirects=False)
+@lru_cache(maxsize=2)
+def _http(here: bool) -> Any:
+    """Return the client for all servers of this process; redirections are not followed.
+
+    Proxies of the environment are used, but not for servers of this machine.
+    """
+    return client(follow_redirects=False, trust_env=not here)
 
 
 _OPENING = threading.Lock()

@@ -16,6 +16,7 @@ from hearth.llm.endpoint import Endpoint
 from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import PromptPage, page
 from hearth.llm.replies import Reply
+from hearth.llm.timed_connections import asking
 from hearth.models.interface import Request, Steps
 from hearth.models.text.retrieval import Similarity, text_of
 from hearth.models.text_examples import Example
@@ -123,7 +124,7 @@ class LanguagePlanner:
 
         A budget that is spent ends the asking: the other requests have no answer.
         """
-        with ThreadPoolExecutor(self.at_once) as pool:
+        with ThreadPoolExecutor(self.at_once) as pool, asking(pool):
             return [self._read(found) for found in pool.map(self._asked, requests, self._chosen(requests))]
 
     def _chosen(self, requests: Sequence[Request]) -> list[list[Example]]:

@@ -10,6 +10,7 @@ from math import isfinite
 from typing import Any
 
 from hearth.envs.text_layout import printable
+from hearth.llm.timed_connections import within
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.optional_libraries import library
@@ -99,7 +100,7 @@ def post(client: Any, url: str, body: bytes, headers: Mapping[str, str], seconds
     httpx2 = library("httpx2")
     until, parts, size = time.monotonic() + seconds, [], 0
     try:
-        with client.stream("POST", url, content=body, headers=headers, timeout=seconds) as reply:
+        with within(seconds), client.stream("POST", url, content=body, headers=headers, timeout=seconds) as reply:
             for part in reply.iter_bytes():
                 size += len(part)
                 parts.append(part)

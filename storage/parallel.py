@@ -75,6 +75,16 @@ def begin() -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
+def begin_apart() -> None:
+    """Let a worker that runs code of others end with its run, in a session of its own.
+
+    Signals that such code sends to its group reach nobody else.
+    """
+    begin()
+    if sys.platform != "win32":
+        os.setsid()
+
+
 def _end_with_parent() -> None:
     """Workers wait for work on a pipe that each of them holds open: without this they would wait for ever."""
     parent = multiprocessing.parent_process()
@@ -122,7 +132,7 @@ def _results(function: Callable[[Job], Result], jobs: Iterable[Job], workers: in
     if not first or (not apart and (workers < 2 or len(first) < 2)):
         yield from map(function, chain(first, waiting))
         return
-    with ProcessPoolExecutor(min(workers, len(first)), context(), begin) as pool:
+    with ProcessPoolExecutor(min(workers, len(first)), context(), begin_apart if apart else begin) as pool:
         given: deque[Future[Result]] = deque()
         try:
             for job in chain(first, waiting):

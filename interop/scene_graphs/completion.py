@@ -11,9 +11,12 @@ from hearth.homes.from_graph.layout_from_boxes import has_geometry, measured
 from hearth.homes.geometry import bottom, footprint, top
 from hearth.homes.lint import CHECKS, NEEDS_STATES, View
 from hearth.homes.object_shapes import Form, form
-from hearth.homes.relations import close, facing
+from hearth.homes.plans.home_shell import Thing
+from hearth.homes.relations import close, facing, many_close
 from hearth.interop.scene_graphs.single_holders import is_seat_for
 from hearth.kb.knowledge import Knowledge
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
 
@@ -207,8 +210,35 @@ def laid_out(graph: EnvironmentGraph, name: str, knowledge: Knowledge) -> Enviro
     return lay_out(graph, name, knowledge).graph
 
 
+MOST_NEAR = 100_000
+"""CLOSE edges that are made for a graph; the largest homes of others have a third of them."""
+
+MOST_LOOKS = 4_000_000
+"""Pairs of things in one room, one of which may look at the other, that are looked at."""
+
+
+def _need_few_near(things: Sequence[Thing], lookable: frozenset[str]) -> None:
+    """Refuse things in heaps, and more things that look at one another than any room has."""
+    close_edges = many_close(things, MOST_NEAR)
+    held = Counter(thing.room for thing in things)
+    aims = Counter(thing.room for thing in things if thing.class_name in lookable)
+    looks = max((held[room] * count for room, count in aims.items()), default=0)
+    if close_edges > MOST_NEAR or looks > MOST_LOOKS:
+        message = (
+            f"its things stand in heaps: more than {MOST_NEAR:,} CLOSE edges between {len(things):,} things"
+            if close_edges > MOST_NEAR
+            else f"a room of things that may look at one another in {looks:,} pairs; at most {MOST_LOOKS:,}"
+        )
+        remedy = "are its boxes in meters? else leave out --fill, or give it fewer things"
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, suggestion=remedy)
+
+
 def nearness(graph: EnvironmentGraph, knowledge: Knowledge) -> list[Edge]:
-    """Return the CLOSE and FACING edges that the boxes of a graph show and that it lacks."""
+    """Return the CLOSE and FACING edges that the boxes of a graph show and that it lacks.
+
+    Raises:
+        HearthError: FILE_TOO_LARGE: the things stand in heaps, and have more than `MOST_NEAR` CLOSE edges.
+    """
     if not has_geometry(graph):
         return []
     rooms = {node.id for node in graph.nodes if node.category == ROOM_CATEGORY}
@@ -221,6 +251,7 @@ def nearness(graph: EnvironmentGraph, knowledge: Knowledge) -> list[Edge]:
         if thing.room
     ]
     lookable = frozenset(name for name, known in knowledge.objects.items() if "LOOKABLE" in known.properties)
+    _need_few_near(things, lookable)
     pairs = [("CLOSE", each) for each in close(things).tolist()] + [
         ("FACING", each) for each in facing(things, lookable)
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -59,6 +60,75 @@ def test_a_run_ends_though_its_agent_leaves_something_behind(tmp_path, does):
     done = subprocess.run(command(tmp_path, does), capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode in (0, 1) and (tmp_path / "r.jsonl").exists(), done.stderr
     assert "Traceback" not in done.stderr and "Exception ignored" not in done.stderr
+
+
+LEAVES = {
+    "a program": "__import__('subprocess').Popen(['sleep', '987.25'])",
+    "a program in a session of its own": "__import__('subprocess').Popen(['sleep', '987.25'], start_new_session=True)",
+    "a program of a process that ended": "os.fork() or (os.setsid(), os.fork() and os._exit(0), "
+    "os.execvp('sleep', ['sleep', '987.25']))",
+    "one of a worker that ended": "(__import__('subprocess').Popen(['sleep', '987.25'], start_new_session=True), "
+    "os._exit(0))",
+    "copies of its process": "[os.fork() for _ in range(3)]",
+}
+
+
+def _left(folder):
+    """The command lines of processes that an agent of this folder has left."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        try:
+            words = (place / "cmdline").read_bytes().split(b"\0")
+            inside = (place / "cwd").readlink() == folder
+        except OSError:
+            continue
+        if inside and int(place.name) != os.getpid() and words[0]:
+            found.append(b" ".join(words))
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems do not give orphans to a process")
+@pytest.mark.parametrize("does", LEAVES.values(), ids=LEAVES)
+def test_no_process_is_left_behind(tmp_path, does):
+    done = subprocess.run(
+        command(tmp_path, does), capture_output=True, text=True, timeout=90, check=False, cwd=tmp_path
+    )
+    assert done.returncode in (0, 1) and (tmp_path / "r.jsonl").exists(), done.stderr
+    until = time.monotonic() + 5
+    while _left(tmp_path) and time.monotonic() < until:
+        time.sleep(0.1)
+    assert _left(tmp_path) == []
+    records = (tmp_path / "r.jsonl").read_text().splitlines()[1:]
+    assert len(records) == 1 and "Traceback" not in done.stderr
+
+
+def test_a_signal_to_its_group_ends_the_episode_and_not_the_run(tmp_path):
+    does = "os.killpg(os.getpgrp(), signal.SIGINT)"
+    done = subprocess.run(command(tmp_path, does), capture_output=True, text=True, timeout=90, check=False)
+    assert done.returncode == 1 and "AGENT_FAILED" in (tmp_path / "r.jsonl").read_text(), done.stderr
+
+
+def test_an_endless_recursion_is_ended_soon_after_its_time(tmp_path):
+    does = "sys.setrecursionlimit(10**8); (deeper := lambda: deeper())()"
+    began = time.monotonic()
+    done = subprocess.run(command(tmp_path, does), capture_output=True, text=True, timeout=90, check=False)
+    assert done.returncode == 1 and time.monotonic() - began < 60, done.stderr
+    assert '"end":' in (tmp_path / "r.jsonl").read_text() and "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("name", ["len", "isinstance", "zip", "__import__", "BaseException", "__build_class__"])
+def test_a_changed_builtin_is_a_failure_in_words_and_is_given_back(tmp_path, name):
+    does = f"__import__('builtins').{name} = None"
+    done = subprocess.run(command(tmp_path, does), capture_output=True, text=True, timeout=90, check=False)
+    assert done.returncode == 1 and "Traceback" not in done.stderr, done.stderr
+    assert f"it changed `{name}` of builtins" in (tmp_path / "r.jsonl").read_text()
+
+
+def test_what_breaks_our_part_of_the_process_is_the_failure_of_the_agent(tmp_path):
+    does = "import hearth.challenges.episodes as ours; ours.analysed = None"
+    done = subprocess.run(command(tmp_path, does), capture_output=True, text=True, timeout=90, check=False)
+    assert done.returncode == 1 and "Traceback" not in done.stderr, done.stderr
+    assert "failed by TypeError" in (tmp_path / "r.jsonl").read_text()
 
 
 def test_a_run_that_is_asked_to_end_says_so_by_its_status(tmp_path):

@@ -14,9 +14,10 @@ import pytest
 from lying_server import dripping, endless, gone, half, raw, reply, serving, silent
 
 from hearth import Endpoint
-from hearth.llm.addresses import LOCAL, checked_url, key_for, read_name
+from hearth.llm.addresses import LOCAL, checked_url, is_here, key_for, read_name
 from hearth.llm.answer_cache import AnswerCache
 from hearth.llm.language_settings import Asking, Means, read_settings
+from hearth.llm.timed_connections import stopped
 from hearth.schemas.diagnostics import HearthError
 
 HELLO = [{"role": "user", "content": "hello"}]
@@ -119,6 +120,71 @@ def test_no_reply_takes_longer_than_it_may(asked, deed):
     with serving(raw(deed)) as (url, _), pytest.raises(HearthError, match="NO_ANSWER"):
         asked(url, tries=1, seconds=0.3).ask(HELLO)
     assert time.monotonic() - began < 3
+
+
+@pytest.mark.parametrize("name", ["continues", "header lines", "a header line"])
+def test_a_head_that_comes_slowly_takes_no_longer_either(asked, name):
+    ok = b"HTTP/1.1 200 OK\r\n"
+    heads = {"continues": (b"", b"HTTP/1.1 100 Continue\r\n\r\n"), "header lines": (ok, b"x: y\r\n"),
+             "a header line": (ok + b"x: ", b"y")}  # fmt: skip
+
+    def slowly(handler):
+        first, more = heads[name]
+        handler.wfile.write(first)
+        for _ in range(200):
+            handler.wfile.write(more)
+            handler.wfile.flush()
+            time.sleep(0.05)
+
+    began = time.monotonic()
+    with serving(raw(slowly)) as (url, _), pytest.raises(HearthError, match="NO_ANSWER"):
+        asked(url, tries=1, seconds=0.5).ask(HELLO)
+    assert time.monotonic() - began < 3
+
+
+def test_a_stop_ends_requests_and_waits_of_other_threads(asked):
+    with serving(raw(silent)) as (url, _):
+        model = Endpoint(url, "mini", Asking(), Means(tries=4, seconds=50.0))
+        found = []
+
+        def ask():
+            try:
+                model.ask(HELLO)
+            except HearthError as error:
+                found.append(error)
+
+        thread = threading.Thread(target=ask, daemon=True)
+        thread.start()
+        time.sleep(0.3)
+        began = time.monotonic()
+        with stopped():
+            thread.join(5)
+        assert len(found) == 1 and time.monotonic() - began < 2
+
+
+@pytest.mark.parametrize(
+    ("url", "here"),
+    [("http://127.0.0.1:1/v1", True), ("http://[::1]/v1", True), ("http://localhost/v1", True),
+     ("http://127.0.0.1.evil.org/v1", False), ("http://localhost.evil.org", False), ("https://api.openai.com", False)],
+)  # fmt: skip
+def test_addresses_of_this_machine(url, here):
+    assert is_here(url) == here
+
+
+def test_a_server_of_this_machine_is_asked_without_a_proxy(asked, monkeypatch):
+    from hearth.llm import endpoint
+
+    monkeypatch.setenv("HEARTH_LLM_KEY", SECRET)
+    for name in ("NO_PROXY", "no_proxy"):
+        monkeypatch.delenv(name, raising=False)
+    with serving("of the proxy") as (proxy, spy), serving("of the server") as (url, _):
+        for name in ("HTTP_PROXY", "http_proxy", "ALL_PROXY", "all_proxy"):
+            monkeypatch.setenv(name, proxy.removesuffix("/v1"))
+        endpoint._http.cache_clear()
+        try:
+            assert asked(url)("hello") == "of the server" and not spy.asked
+        finally:
+            endpoint._http.cache_clear()
 
 
 def test_nobody_listens(asked):
