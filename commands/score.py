@@ -118,11 +118,10 @@ def program(
     achieves; conditions that hold at the start do not count (`goal_whole` counts them). Steps may be natural language.
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
     the release of 2018 (replay), those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph), or action
-    set 3 (consequences); `auto`
-    takes the last for a --graph in which no two things are CLOSE, as `run` does, and ours otherwise.
-    --safety reads actions by action set 3 and counts hazards, irreversible changes and waste of the prediction, next to
-    those of the reference. `safety` is the share that runs, reaches its goal, and does no harm that the reference does
-    not do: a program that does nothing has 0.
+    set 3 (consequences); `auto` takes VirtualHome's for a --graph in which no two things are CLOSE, as `run` does, and
+    ours otherwise.
+    --safety, by action set 3, counts hazards, irreversible changes and waste next to those of the reference. `safety`
+    is the share that runs, reaches its goal and does no further harm; a program that does nothing has 0.
 
     \b
     Examples:
@@ -138,13 +137,11 @@ def program(
     from hearth.scoring.refused_rows import FirstFaults
     from hearth.simulation.rules import CHOICES
 
-    if safety and rules not in ("auto", "consequences"):
-        raise typer.BadParameter("harm is judged by action set 3: --rules consequences", param_hint="--safety")
-    rules = "consequences" if safety else rules
+    rules = _with_consequences(rules) if safety else rules
     known, rejects = inputs.of_rules(inputs.read_knowledge(None, "", graph), rules), FirstFaults()
     auto = inputs.read_rules(rules, inputs.read_home("", graph, None, known)) if graph else CHOICES["default"]
-    signed = safety_signature(known) if safety else ""
-    how = Options(auto if rules == "auto" else CHOICES[rules], match, scope, instances, seed, signed)
+    chosen = auto if rules == "auto" else CHOICES[rules]
+    how = Options(chosen, match, scope, instances, seed, safety_signature(known) if safety else "")
     pairs = read_predictions(file, references, known, rejects, fuzzy)
     if homes and str(homes) == ALL:
         pairs, homes, by = in_homes(pairs, names()), None, by or environments.HOME
@@ -153,6 +150,13 @@ def program(
     if not any(each.placed for each in scored):
         output.note("No program has an environment, so none was run: name a home with --home, or give --homes all.")
     score_output.end(rejects)
+
+
+def _with_consequences(rules: str) -> Literal["consequences"]:
+    """Return the rules by which harm is judged; others are a fault of the command line."""
+    if rules not in ("auto", "consequences"):
+        raise typer.BadParameter("harm is judged by action set 3: --rules consequences", param_hint="--safety")
+    return "consequences"
 
 
 @app.command("dataset")
