@@ -99,9 +99,10 @@ def by_classes(goal, found):
 
 
 def test_goals_of_household_tasks_are_written_and_mean_the_same():
-    tasks = [task for task in household_tasks("valid_seen", 16)
-             if not task.goal.parts and all(literal.name in SAID for literal, _ in task.goal)][:5]  # fmt: skip
+    tasks = [task for task in household_tasks("valid_seen", 10)
+             if not task.goal.parts and all(literal.name in SAID for literal, _ in task.goal)][:2]  # fmt: skip
     assert tasks
+    assert len(tasks) == 2
     for task in tasks:
         start = task.start()
         again = activity(problem_text(start.graph(), task.goal, KNOWN))
