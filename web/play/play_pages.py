@@ -24,7 +24,7 @@ from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
-from hearth.web.play.play_trials import INTERFACES, Trial, drawable, offered, published, trial
+from hearth.web.play.play_trials import INTERFACES, Trial, drawable, helpers, offered, published, trial
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.third_party_scripts import missing
 from hearth.web.web_errors import WebError
@@ -84,7 +84,7 @@ def _line(each: Stored) -> dict[str, Any]:
     return {
         "id": each.id,
         "title": f"{each.trial.title}, in {home_words(each.trial.task.home)}",
-        "helper": each.trial.helper,
+        "helper": helpers().get(each.trial.helper, ""),
         "state": state,
     }
 
