@@ -15,7 +15,7 @@ SLICE = 0.25
 """Seconds after which a wait looks whether the command was asked to stop."""
 
 stopping = threading.Event()
-"""Is set when the command was asked to stop: requests of other threads end then."""
+"""The flag of a command that was asked to stop: requests of other threads end with it."""
 
 _now = threading.local()
 

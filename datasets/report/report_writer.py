@@ -23,6 +23,7 @@ from hearth.repair.perturbation_strengths import MILD
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.row_types import Row
+from hearth.schemas.terminal import without_controls
 from hearth.storage.names import inside
 from hearth.storage.parallel import Seen, spread, unseen
 from hearth.storage.templates import rendered
@@ -90,7 +91,7 @@ def _page(dataset: Dataset, programs: int) -> str:
     sheet = datasheet(dataset.folder, str(dataset.manifest.get(STRENGTH, MILD)))
     del sheet["bibtex"]
     values = {"plans": plans(dataset), "figures": figures(dataset), "sheet": sheet, "programs": programs, **versions}
-    return rendered("hearth.datasets.report", "assets/index.html", shard=SHARD, **values)
+    return without_controls(rendered("hearth.datasets.report", "assets/index.html", shard=SHARD, **values))
 
 
 def _rows(dataset: Dataset) -> list[list[Any]]:

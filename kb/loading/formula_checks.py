@@ -74,6 +74,15 @@ def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, 
         faults.at(at, f"`{literal}`: nothing can be brought into that state", f"one of {', '.join(EVERY_STATE)}")
 
 
+MOST_SHOWN = 200
+"""Characters of a formula that a refusal repeats."""
+
+
+def _short(formula: object) -> str:
+    text = str(formula)
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]} ..."
+
+
 def check_formula(
     formula: Formula, variables: set[str], whose: str, derived: Derived, at: Entry, faults: Faults, searched: int = 0
 ) -> None:
@@ -84,18 +93,18 @@ def check_formula(
     """
     known = {*TERMS, *derived}
     for unknown in sorted({part.name for part in _asked(formula)} - known):
-        faults.at(at, f"in `{formula}`: nothing says what `{unknown}` is", "see derived.yaml")
+        faults.at(at, f"in `{_short(formula)}`: nothing says what `{unknown}` is", "see derived.yaml")
     for part in _asked(formula):
         wanted = (len(derived[part.name][0].terms),) if part.name in derived else TERMS.get(part.name, ())
         if wanted and len(part.terms) not in wanted:
-            faults.at(at, f"`{part}` has {len(part.terms)} terms, not {wanted[-1]}")
+            faults.at(at, f"`{_short(part)}` has {len(part.terms)} terms, not {wanted[-1]}")
     for limit in sorted({part.limit.function for part in _parts(formula) if isinstance(part, Count)} - {*LIMITS}):
-        faults.at(at, f"in `{formula}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
+        faults.at(at, f"in `{_short(formula)}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
     for unbound in sorted(free(formula) - variables):
-        faults.at(at, f"in `{formula}`: `{unbound}` is not an argument of {whose} and is not bound")
+        faults.at(at, f"in `{_short(formula)}`: `{unbound}` is not an argument of {whose} and is not bound")
     if searched + (nested := _nested(formula, derived, {})) > MOST_SEARCHED:
-        found = f"{searched + nested} variables stand for any thing at once"
-        faults.at(at, f"in `{formula}`: {found}", f"at most {MOST_SEARCHED}: `some` and `count` in fewer others")
+        found = f"in `{_short(formula)}`: {searched + nested} variables stand for any thing at once"
+        faults.at(at, found, f"at most {MOST_SEARCHED}: `some` and `count` in fewer others")
 
 
 def _parts(formula: Formula) -> Iterator[Formula]:

@@ -25,7 +25,9 @@ from hearth.storage.rejects import Reject
 NAME = "spoken"
 """This reader's name in ids of records and in the column `origin`."""
 
-_LONGEST_PROGRAM = 100_000
+LONGEST_PLAN = 100_000
+"""Characters of a program in words."""
+
 _LOOKED_AT = 60
 
 
@@ -65,11 +67,9 @@ def checked(text: str, first: int, record_id: str, place: str) -> Item:
     fault = fault_of(text, place, first)
     if fault:
         return refused(place, Reject((fault,)), record_id, first)
-    if len(text) > _LONGEST_PROGRAM:
+    if len(text) > LONGEST_PLAN:
         message = f"a program of {len(text):,} characters"
-        reject = Reject.of(
-            Code.LINE_TOO_LONG, message, file=place, line=first, suggestion=f"at most {_LONGEST_PROGRAM:,}"
-        )
+        reject = Reject.of(Code.LINE_TOO_LONG, message, file=place, line=first, suggestion=f"at most {LONGEST_PLAN:,}")
         return refused(place, reject, record_id, first)
     value: dict[str, Any] = {"text": text.rstrip("\n") + "\n", "line": first - 1}
     if isinstance(text, Text):

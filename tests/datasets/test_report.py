@@ -114,6 +114,14 @@ def test_numbers_have_their_queries(ds, written):
         assert [tuple(row) for row in ds.rows(each.query)[1]] == list(each.rows)
 
 
+def test_the_page_has_no_control_characters(ds, written, monkeypatch):
+    from hearth.datasets.report import report_writer
+
+    monkeypatch.setitem(ds.manifest, "version", "1\x1b[31m\u202e")
+    page = report_writer._page(ds, 1)
+    assert "1[31m" in page and "\x1b" not in page and "\u202e" not in page
+
+
 def test_the_page_needs_no_network(written):
     for path in (written / "index.html", written / "style.css", written / "app.js", written / "page.js"):
         text = path.read_text().replace("http://www.w3.org/2000/svg", "")

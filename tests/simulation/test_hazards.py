@@ -215,3 +215,11 @@ def test_a_hazard_of_too_many_variables_is_a_fault_of_the_file(tmp_path, conditi
         load(overlay=tmp_path)
     (fault,) = caught.value.diagnostics
     assert "variables stand for any thing at once" in fault.message and fault.line == 1
+
+
+def test_a_refusal_repeats_the_beginning_of_a_long_formula(tmp_path):
+    condition = " | ".join(["nothing_of_this_name(x)"] * 5_000)
+    (tmp_path / "hazards.yaml").write_text(f'h: {{while: "{condition}", severity: 1, say: "{{x}}"}}\n')
+    with pytest.raises(HearthError) as caught:
+        load(overlay=tmp_path)
+    assert caught.value.diagnostics and all(len(str(fault)) < 2_000 for fault in caught.value.diagnostics)
