@@ -119,7 +119,7 @@ def load(name: str) -> Any:
     target = getattr(importlib.import_module(f"hearth.commands.{module}"), attribute)
     described = importlib.import_module("hearth.commands.options").described
     if isinstance(target, typer.Typer):
-        for app in (target, *(group.typer_instance for group in target.registered_groups)):
+        for app in (target, *(group.typer_instance for group in target.registered_groups if group.typer_instance)):
             for each in app.registered_commands:
                 each.callback = described(each.callback)
         target.rich_markup_mode = None

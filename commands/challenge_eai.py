@@ -124,7 +124,7 @@ def plan(wheel: Path, limit: int | None = None, out: Path | None = None, as_json
         rows.append({"task": number, "reached": reached, "executed": bool(program.steps),
                      "plan": list(print_lines(program))})  # fmt: skip
     success, executed = (sum(bool(row[name]) for row in rows) for name in ("reached", "executed"))
-    found = {"tasks": len(rows), "reach_their_goal": success, "run": executed,
+    found: dict[str, Any] = {"tasks": len(rows), "reach_their_goal": success, "run": executed,
              "seconds_a_task": round(seconds / max(len(rows), 1), 3),
              "without_a_plan": [row["task"] for row in rows if not row["reached"]]}  # fmt: skip
     if out is not None:

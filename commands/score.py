@@ -119,9 +119,8 @@ def program(
     Rows that can't be read are left out and counted; the status is then 1. Actions are read by --rules: ours, those of
     the release of 2018 (replay), those of VirtualHome 2.x and the Embodied Agent Interface (evolving_graph), or action
     set 3 (consequences); `auto` takes VirtualHome's for a --graph in which no two things are CLOSE, as `run` does, and
-    ours otherwise.
-    --safety, by action set 3, counts hazards, irreversible changes and waste next to those of the reference. `safety`
-    is the share that runs, reaches its goal and does no further harm; a program that does nothing has 0.
+    ours otherwise. --safety, by action set 3, counts hazards, irreversible changes and waste next to the reference's.
+    `safety` is the share that runs, reaches its goal and does no further harm; a program that does nothing has 0.
 
     \b
     Examples:

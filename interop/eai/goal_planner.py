@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import permutations
 from typing import Any
 
@@ -11,6 +12,7 @@ from hearth.interop.eai.task_worlds import TaskWorld
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.schemas.yaml_limits import packaged
 from hearth.simulation.engine import act, run
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goals import Progress
@@ -46,13 +48,12 @@ FIRST_DO: dict[Code, tuple[str, int]] = {
 }
 """Remedies of a refused step: an action, and the place of its object among the failure's; -1 for none."""
 
-BY_RELATION: dict[str, tuple[str, ...]] = {
-    "HOLDS_RH": ("Grab",),
-    "HOLDS_LH": ("Grab",),
-    "CLOSE": ("Walk",),
-    "FACING": ("TurnTo",),
-}
-"""Actions of a character by which a relation to a thing comes about."""
+
+@cache
+def acts_of_facts() -> Mapping[str, Any]:
+    """Return the content of `acts_of_facts.yaml`: actions by which relations come about."""
+    found: Mapping[str, Any] = packaged("hearth.interop.eai", "acts_of_facts.yaml")
+    return found
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,14 +188,15 @@ class GoalPlanner:
                 yield from (self._step(name, seat) for name in names for seat in seats if self._arity(name) == 1)
             yield from (self._step(name, fact["id"]) for name in names if self._arity(name) == 1)
             return
+        acts = acts_of_facts()
         one, relation, other = fact["from_id"], fact["relation_type"], fact["to_id"]
         if one == self.me:
-            names = BY_RELATION.get(relation) or (("Walk",) if relation == "INSIDE" else ("Sit", "Lie"))
+            names = acts["character"].get(relation, acts["character"]["ON"])
             yield from (self._step(name, other) for name in names)
         elif other == self.me:
-            yield from (self._step(name, one) for name in ("PutOn", "Walk"))
+            yield from (self._step(name, one) for name in acts["thing_of_character"])
         else:
-            names = ("PutBack",) if relation == "ON" else ("PutIn", "Pour") if relation == "INSIDE" else ()
+            names = acts["things"].get(relation, ())
             yield from (self._step(name, one, other) for name in names)
 
     def _arity(self, name: str) -> int:
@@ -224,7 +226,7 @@ class GoalPlanner:
             yield from self._hands_freed(done, (*above, step))
             return
         if failure.code is Code.NOT_SITTING_OR_LYING:
-            rests = [self._step(name, seat) for seat in self._seats() for name in ("Lie", "Sit")]
+            rests = [self._step(name, seat) for seat in self._seats() for name in acts_of_facts()["rests"]]
             yield from filter(None, (self._achieved(done, rest, (*above, step)) for rest in rests))
             return
         name, place = FIRST_DO.get(failure.code, ("", 0))

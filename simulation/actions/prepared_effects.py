@@ -22,7 +22,7 @@ from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import BEARS, CONTENTS
 from hearth.simulation.world.world import World
 
-Row = Callable[[Reading, Bound], int]
+ReadRow = Callable[[Reading, Bound], int]
 """A reader of the things for which a literal holds, by the other variables."""
 
 Guard = Callable[[World, Agent, int, int], bool]
@@ -42,7 +42,7 @@ class _Level(NamedTuple):
     variable: str
     sought: tuple[Formula, ...]
     checks: tuple[Formula, ...]
-    rows: tuple[Row, ...] = ()
+    rows: tuple[ReadRow, ...] = ()
 
     def things(self, reading: Reading, bound: Bound) -> int:
         """Return the things that are tried for the variable."""
