@@ -62,7 +62,8 @@ def test_what_is_a_url(path, url):
 
 def build_into(url, made):
     settings = made.settings
-    return build(settings.sources, url, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0)
+    return build(settings.sources, url, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0,
+                 action_set=2)  # fmt: skip
 
 
 def forget_the_copy():
@@ -242,7 +243,8 @@ def test_whoever_reads_during_the_first_build_finds_none_or_all(made, changes):
 
     settings = made.settings
     for name in ("ingest", "validate", "sample", "augment", "render"):
-        build(settings.sources, URL, only=name, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0)
+        build(settings.sources, URL, only=name, homes=settings.homes, homes_folder=settings.homes_folder, pictures=0,
+                 action_set=2)  # fmt: skip
     changes.append(read)
     publish_anew(made, 0)
     assert list(dict.fromkeys(seen)) == ["none", read_whole()]
