@@ -8,6 +8,8 @@ from typing import Any
 import typer
 
 from hearth.commands import inputs, output
+from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.failures import Code
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -190,16 +192,21 @@ def score(file: Path, answers: Path, as_json: bool = False) -> None:
     from hearth.storage.input_files import read_input
 
     known = default()
-    tasks_by_id = {task["id"]: task for task in orjson.loads(read_input(file))}
+    try:
+        tasks_by_id = {task["id"]: task for task in orjson.loads(read_input(file))}
+        rows = [orjson.loads(line) for line in read_input(answers).splitlines() if line.strip()]
+        asked = [(tasks_by_id.get(row.get("id")), row) for row in rows]
+    except (ValueError, TypeError, KeyError, AttributeError) as error:
+        message = f"these are not tasks of `challenge eai tasks`, or not answers to them: {str(error)[:100]}"
+        raise HearthError.of(Code.BAD_JSON, message, file=str(file)) from error
     counts, plans, others = Counts(), [], 0
-    for line in read_input(answers).splitlines():
-        row = orjson.loads(line) if line.strip() else {}
-        task, ability = tasks_by_id.get(row.get("id")), row.get("ability")
+    for task, row in asked:
+        ability = row.get("ability")
         if task is not None and ability == "goal_interpretation":
             counts = counts.plus(Counts(*interpretation_counts(task, str(row.get("answer", "")))))
         elif task is not None and ability == "action_sequencing":
             plans.append(plan_verdict(task, str(row.get("answer", "")), known))
-        elif row:
+        else:
             others += 1
     precision, recall, f1 = counts.scores()
     shares = [round(100 * sum(each[k] for each in plans) / max(len(plans), 1), 2) for k in (0, 1)]
