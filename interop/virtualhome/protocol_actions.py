@@ -140,19 +140,19 @@ def _render_script(simulator: Simulator, request: Request) -> Reply:
         simulator.recordings.check()
     program = _script(lines, scene.world, search=settings.search)
     done, failure = ticks_done(scene.world, program, RULES)
-    told: dict[str, Any] = {str(agent): {"message": "Success"} for agent in range(len(scene.world.agents))}
+    messages: dict[str, Any] = {str(agent): {"message": "Success"} for agent in range(len(scene.world.agents))}
     if failure is not None:
-        told[str(failure.agent)] = {"message": failed(failure, program)}
+        messages[str(failure.agent)] = {"message": failed(failure, program)}
     if settings.skip:
-        return Reply(failure is None, _json(told))
+        return Reply(failure is None, _json(messages))
     keyframes = [scene.followed.keyframe(0)]
     for tick, (steps, world) in enumerate(done, 1):
         scene.advance(steps, world)
         if settings.recording:
             keyframes.append(scene.followed.keyframe(tick, steps))
     if settings.recording:
-        told["recording"] = _recorded(simulator, keyframes, settings)
-    return Reply(failure is None and "error" not in told.get("recording", {}), _json(told))
+        messages["recording"] = _recorded(simulator, keyframes, settings)
+    return Reply(failure is None and "error" not in messages.get("recording", {}), _json(messages))
 
 
 def _recorded(simulator: Simulator, keyframes: Any, settings: Any) -> dict[str, Any]:

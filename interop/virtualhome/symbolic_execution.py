@@ -19,8 +19,9 @@ from hearth.interop.virtualhome.symbolic_classes import (
     ScriptParseException,
     read_script_from_list_string,
 )
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failure_words import in_program, sentence
-from hearth.schemas.failures import Failure
+from hearth.schemas.failures import Code, Failure
 from hearth.schemas.graph_wrappers import graph_in
 from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution, run
@@ -58,14 +59,19 @@ class ScriptExecutor:
         return execution.executable, last, [EnvironmentState.at(world).to_dict() for world in worlds]
 
     def find_solutions(self, script: Script, init_changers: Sequence[Any] | None = None) -> Iterator[EnvironmentState]:
-        """Yield the last state of a script with things with which it runs; nothing where there are none."""
+        """Yield the last state of a script with things with which it runs; nothing where there are none.
+
+        Raises:
+            HearthError: BAD_ARGUMENT: init_changers are given.
+        """
         execution = self._run(script, init_changers)
         if execution.executable:
             yield EnvironmentState.at(execution.final)
 
     def _run(self, script: Script, init_changers: Sequence[Any] | None) -> Execution:
         if init_changers:
-            raise NotImplementedError("init_changers: change the graph before, or give check_script the preconditions")
+            remedy = "change the graph before, or give check_script the preconditions"
+            raise HearthError.of(Code.BAD_ARGUMENT, "init_changers are not applied", suggestion=remedy)
         self.info = ExecutionInfo()
         steps = tuple(replace(step, agent=self.char_index) for step in script.program.steps)
         world, program = self.graph.world(), script.program.with_steps(steps)

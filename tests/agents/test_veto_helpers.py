@@ -70,7 +70,7 @@ class VetoScripted(Veto, Scripted):
 
 
 def played(agent, goal=None, ticks=14, world=None):
-    """What the helper did, and the counts of harm."""
+    """Return the acts of the helper, and the counts of harm."""
     env = Env(CONSEQUENCES, partial=False)
     start = world or kitchen()
     env.restore(start)

@@ -84,3 +84,11 @@ def ids_of(graph: dict) -> dict[str, int]:
     for node in graph["nodes"]:
         found.setdefault(node["class_name"], node["id"])
     return found
+
+
+def states(client, name):
+    return next(node["states"] for node in client.graph()["nodes"] if node["class_name"] == name)
+
+
+def relations(client, number):
+    return {(e["relation_type"], e["to_id"]) for e in client.graph()["edges"] if e["from_id"] == number}
