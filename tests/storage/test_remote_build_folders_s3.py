@@ -54,22 +54,16 @@ def bucket(server):
     filesystem.rm("homes", recursive=True)
 
 
+def homes_of(made):
+    """Return the options of the golden dataset, which is of action set 2 and has no pictures."""
+    return "--homes", made.settings.homes_folder, *"--home cabin --action-set 2 --pictures 0 --videos 0".split()
+
+
 @pytest.mark.parametrize("engine", ["local", "dask"])
 def test_built_verified_and_queried(run, bucket, made, engine):
     if engine == "dask":
         pytest.importorskip("distributed")
-    homes = (
-        "--homes",
-        made.settings.homes_folder,
-        "--home",
-        "cabin",
-        "--action-set",
-        "2",
-        "--pictures",
-        "0",
-        "--videos",
-        "0",
-    )
+    homes = homes_of(made)
     bucket.put(str(made.settings.sources[1]), "homes/in/evening.txt")
     sources = [made.settings.sources[0], "s3://homes/in/evening.txt", made.settings.sources[2]]
     run("build", *sources, "--out", "s3://homes/evening", *homes, "--workers", "2", "--engine", engine)
@@ -107,18 +101,7 @@ print(opened, len(failed), ",".join(keys), failed[:3])
 
 
 def test_eight_readers_while_a_dataset_is_replaced(run, bucket, made, tmp_path):
-    homes = (
-        "--homes",
-        made.settings.homes_folder,
-        "--home",
-        "cabin",
-        "--action-set",
-        "2",
-        "--pictures",
-        "0",
-        "--videos",
-        "0",
-    )
+    homes = homes_of(made)
     run("build", *made.settings.sources, "--out", "s3://homes/evening", *homes)
     (tmp_path / "reader.py").write_text(READER)
     done, ready = tmp_path / "done", [tmp_path / f"ready{number}" for number in range(8)]
