@@ -56,7 +56,8 @@ def bucket(server):
 
 def homes_of(made):
     """Return the options of the golden dataset, which is of action set 2 and has no pictures."""
-    return "--homes", made.settings.homes_folder, *"--home cabin --action-set 2 --pictures 0 --videos 0".split()
+    folder = made.settings.homes_folder
+    return "--homes", folder, "--home", "cabin", "--action-set", "2", "--pictures", "0", "--videos", "0"
 
 
 @pytest.mark.parametrize("engine", ["local", "dask"])
