@@ -13,7 +13,15 @@ from typing import NamedTuple
 from hearth.kb.formula import And, Formula, Or, free
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Hazard
-from hearth.simulation.actions.formula_evaluation import Reading, candidates
+from hearth.simulation.actions.formula_evaluation import (
+    Bound,
+    Reading,
+    candidates,
+    flat_parts,
+    is_narrow,
+    is_of_kind,
+    kind_of,
+)
 from hearth.simulation.engine import Execution
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import CONSEQUENCES
@@ -107,22 +115,52 @@ def present(world: World) -> Iterator[tuple[Place, bool]]:
     if not world.agents:
         return
     reading = Reading(world, world.agents[0], CONSEQUENCES)
-    for hazard in world.home.knowledge.hazards.values():
+    for hazard, variables, cases in _plan(world.home.knowledge):
         awake = hazard.asleep and not _everybody_lies(world)
-        for case in _cases(hazard):
-            for things in _matches(reading, case, _variables(hazard)):
+        for case in cases:
+            for things in _matches(reading, case, variables):
                 yield (hazard.name, things), not (awake or (hazard.alone and _attended(world, things[0])))
 
 
-@lru_cache(maxsize=256)
-def _variables(hazard: Hazard) -> tuple[str, ...]:
-    return tuple(sorted(free(hazard.condition)))
+class _Case(NamedTuple):
+    """The joined parts of one alternative of a condition, by the variables that they mention.
+
+    Attributes:
+        closed: parts without a variable.
+        kinds: of each variable, the parts that ask for its class and properties alone.
+        narrow: literals that say which few things a variable may be.
+        single: of each variable, the further parts that mention it alone.
+        joint: parts that mention both.
+    """
+
+    closed: tuple[Formula, ...]
+    kinds: dict[str, tuple[Formula, ...]]
+    narrow: tuple[Formula, ...]
+    single: dict[str, tuple[Formula, ...]]
+    joint: tuple[Formula, ...]
 
 
-@lru_cache(maxsize=256)
-def _cases(hazard: Hazard) -> tuple[tuple[Formula, ...], ...]:
-    """Return the condition as alternatives of joined parts, by which candidates are found fast."""
-    return tuple(_alternatives(hazard.condition))
+@lru_cache(maxsize=16)
+def _plan(known: Knowledge) -> tuple[tuple[Hazard, tuple[str, ...], tuple[_Case, ...]], ...]:
+    """Return each hazard with its variables, and its condition as alternatives by which candidates are found fast."""
+    found = []
+    for hazard in known.hazards.values():
+        variables = tuple(sorted(free(hazard.condition)))
+        cases = (_case(flat_parts(parts), variables) for parts in _alternatives(hazard.condition))
+        found.append((hazard, variables, tuple(cases)))
+    return tuple(found)
+
+
+def _case(parts: tuple[Formula, ...], variables: tuple[str, ...]) -> _Case:
+    names = {id(part): free(part) for part in parts}
+    alone = {name: tuple(part for part in parts if names[id(part)] == {name}) for name in variables}
+    return _Case(
+        tuple(part for part in parts if not names[id(part)]),
+        {name: tuple(filter(is_of_kind, those)) for name, those in alone.items()},
+        tuple(filter(is_narrow, parts)),
+        {name: tuple(part for part in those if not is_of_kind(part)) for name, those in alone.items()},
+        tuple(part for part in parts if len(names[id(part)]) > 1),
+    )
 
 
 def _alternatives(formula: Formula) -> list[tuple[Formula, ...]]:
@@ -136,21 +174,33 @@ def _alternatives(formula: Formula) -> list[tuple[Formula, ...]]:
     return [(formula,)]
 
 
-def _matches(reading: Reading, parts: tuple[Formula, ...], variables: tuple[str, ...]) -> Iterator[tuple[int, ...]]:
+def _tried(reading: Reading, case: _Case, name: str, bound: Bound) -> int:
+    """Return the things that a variable may be."""
+    found = candidates(reading, name, case.narrow, bound)
+    for part in case.kinds[name] if found else ():
+        found &= kind_of(reading.world.home, part)
+    return found
+
+
+def _matches(reading: Reading, case: _Case, variables: tuple[str, ...]) -> Iterator[tuple[int, ...]]:
     """Yield the things of which all parts hold; the variable that fewer things may be is looked for first."""
-    among = {name: candidates(reading, name, parts, {}) for name in variables}
-    if not all(among.values()) or not all(reading.holds(part, {}) for part in parts if not free(part)):
+    among: dict[str, int] = {}
+    for name in variables:
+        among[name] = _tried(reading, case, name, {})
+        if not among[name]:
+            return
+    if not all(reading.holds(part, {}) for part in case.closed):
         return
     first, *rest = sorted(variables, key=lambda name: among[name].bit_count())
     for i in indices(among[first]):
         bound = {first: i}
-        if not all(reading.holds(part, bound) for part in parts if free(part) == {first}):
+        if not all(reading.holds(part, bound) for part in case.single[first]):
             continue
         if not rest:
             yield (i,)
-        for j in indices(candidates(reading, rest[0], parts, bound)) if rest else ():
+        for j in indices(_tried(reading, case, rest[0], bound)) if rest else ():
             both = {**bound, rest[0]: j}
-            if all(reading.holds(part, both) for part in parts if rest[0] in free(part)):
+            if all(reading.holds(part, both) for part in (*case.single[rest[0]], *case.joint)):
                 yield tuple(both[name] for name in variables)
 
 

@@ -89,12 +89,22 @@ def candidates(reading: Reading, variable: str, parts: Iterable[Formula], bound:
     found = home.everything
     every = list(_flat(parts))
     for part in every:
-        if isinstance(part, Literal) and not part.negated and part.name in _NEAR:
+        if isinstance(part, Literal) and is_narrow(part):
             found &= _NEAR[part.name](reading, part, variable, bound)
     for part in every if found else ():
         if is_of_kind(part) and free(part) == {variable}:
             found &= kind_of(home, part)
     return found
+
+
+def flat_parts(parts: Iterable[Formula]) -> tuple[Formula, ...]:
+    """Return joined parts, each of which is no conjunction."""
+    return tuple(_flat(parts))
+
+
+def is_narrow(part: Formula) -> bool:
+    """Return whether a part says which few nodes a variable may be."""
+    return isinstance(part, Literal) and not part.negated and part.name in _NEAR
 
 
 def _flat(parts: Iterable[Formula]) -> Iterator[Formula]:
