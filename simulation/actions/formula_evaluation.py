@@ -98,7 +98,7 @@ def candidates(reading: Reading, variable: str, parts: Iterable[Formula], bound:
 
 
 def flat_parts(parts: Iterable[Formula]) -> tuple[Formula, ...]:
-    """Return joined parts, each of which is no conjunction."""
+    """Return joined parts, none of which is a conjunction."""
     return tuple(_flat(parts))
 
 
