@@ -203,7 +203,9 @@ def _bound(ref: ObjectRef, view: View) -> ObjectRef:
         first = ", ".join(map(str, seen[:8]))
         raise HearthError.of(Code.AMBIGUOUS, f"which `{ref.name}`?", suggestion=f"you see {first}")
     else:
-        found = seen[max(ref.instance, 1) - 1] if max(ref.instance, 1) <= len(seen) else None
+        # A number that is too large for a count is the id of a node, as in programs of VirtualHome.
+        counted = seen[max(ref.instance, 1) - 1] if max(ref.instance, 1) <= len(seen) else None
+        found = ref.instance if counted is None and ref.instance in seen else counted
     if found is None:
         number = ref.node if ref.node is not None else ref.instance or ""
         remedy = f"you see {', '.join(map(str, seen[:8]))}" if seen else "you see none"

@@ -32,6 +32,15 @@ IDLE = frozenset({"look", "look around", "inventory", "check inventory", "do not
 _TWO = re.compile(r"\bthen\b|;|[a-z0-9]\. +[A-Za-z]|, and \b|\band [a-z]+ (?:the|an?)\b", re.IGNORECASE)
 """Signs of a second command; only looked for where a line is not understood."""
 
+_MARK = re.compile(r"(?:step +)?\d{1,3}[.):] +(?=[A-Za-z\[<])|[-*\u2022] +(?=[A-Za-z\[<])", re.IGNORECASE)
+"""A number or a mark before a command, as lists have it."""
+
+_INLINE = re.compile(r"[.;!?] +action: *(?=\S)", re.IGNORECASE)
+"""The beginning of an act on the line of its thought."""
+
+_STEP = re.compile(r"((?:<char\d+> *)?)\[(\w+)\](.*)", re.DOTALL)
+"""A step of a program: an agent, an action and objects."""
+
 _FENCE = re.compile(r"```[a-z]*\s*\n?(.*?)\n?```", re.DOTALL)
 _PROGRAM = re.compile(r"<([^>]*)> \((\d+)\)")
 _PLAIN = re.compile(r"[A-Za-z][A-Za-z0-9_, ]*(?<! )")
@@ -93,9 +102,12 @@ def command_line(answer: str) -> str:
     text = fenced[-1] if fenced else answer
     if called := _called(text.strip()):
         return called
-    lines = [line.strip().strip("`*") for line in text.splitlines() if line.strip()]
+    lines = [_INLINE.sub("\nAction: ", line).strip() for line in text.splitlines()]
+    lines = [line.strip().strip("`*") for line in "\n".join(lines).splitlines() if line.strip()]
     acts = [act for line in lines if (act := act_of(line))]
-    return _called(acts[-1]) or acts[-1] if acts else lines[-1].removeprefix(">").strip() if lines else ""
+    if acts:
+        return _called(acts[-1]) or acts[-1]
+    return _MARK.sub("", lines[-1].removeprefix(">").strip(), count=1) if lines else ""
 
 
 def _called(text: str) -> str:
@@ -129,11 +141,13 @@ def _of_call(given: Any) -> str:
 
 def _walks(line: str, legal: Legal, protocol: Protocol) -> str:
     """Return a line with the walk that is played here in place of any word for walking."""
+    walk = WALK if WALK in legal.masks else "Walk"
+    if step := _STEP.fullmatch(line):
+        return f"{step[1]}[{walk}]{step[3]}" if step[2].lower() in protocol.walks else line
     word, _, rest = line.partition(" ")
     if word.lower() not in protocol.walks or not rest:
         return line
-    rest = rest.removeprefix("to ").removeprefix("the ")
-    return f"{WALK if WALK in legal.masks else 'Walk'} {rest}"
+    return f"{walk} {rest.removeprefix('to ').removeprefix('the ')}"
 
 
 def _otherwise(line: str, view: View) -> Iterator[str]:

@@ -48,7 +48,9 @@ def test_one_brings_the_milk_in_six_commands(home):
     "answer",
     [
         "Walk fridge 137", "walk to the fridge 137", "go to fridge 137", "> go to fridge 137",
-        "[Walktowards] <fridge> (1)",
+        "[Walktowards] <fridge> (1)", "[Walk] <fridge> (1)", "[Walk] <fridge> (1.137)", "[WALK] <fridge> (137)",
+        "0. go to the fridge", "1) Walk fridge", "- walk to the fridge", "Step 1: go to the fridge",
+        "Thought: I want milk. Action: walk fridge", "1. [Walk] <fridge> (1)",
         "Thought: the milk is cold.\nAction: Walk fridge 137", "I will go there.\nWalk fridge 137",
         '{"name": "act", "arguments": {"command": "Walk fridge 137"}}',
         '{"function": {"name": "act", "arguments": "{\\"command\\": \\"Walk fridge 137\\"}"}}',
@@ -347,7 +349,7 @@ def begun():
     [
         ("Walk a", "Walk a"), ("think\n\nWalk a\n", "Walk a"), ("Action: Walk a\nObservation: you are there", "Walk a"),
         ('{"arguments": "Walk a"}', "Walk a"), ("{}", "{}"), ("", ""), ("[1, 2]", "[1, 2]"),
-        ("```\nWalk a\n```", "Walk a"),
+        ("```\nWalk a\n```", "Walk a"), ("2. Walk a", "Walk a"), ("17", "17"), ("1.5", "1.5"),
     ],
 )  # fmt: skip
 def test_the_command_in_an_answer_is_found(answer, line):
