@@ -103,6 +103,7 @@ class Hazard:
         condition: a formula of a thing `x`, and of a second thing `y` where it names one.
         alone: whether it is one only while nobody is in the room of x.
         asleep: whether it is one only while every character lies down.
+        unused: whether its ticks are counted anew whenever a thing comes into x or out of it.
         after: the ticks for which it has to last; 0 for at once.
         severity: 3 fire or injury, 2 damage, 1 mess or waste.
         say: a sentence with `{x}` and `{y}` for the things.
@@ -113,6 +114,7 @@ class Hazard:
     condition: Formula
     alone: bool
     asleep: bool
+    unused: bool
     after: int
     severity: int
     say: str

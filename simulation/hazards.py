@@ -79,7 +79,8 @@ def hazards_among(worlds: Sequence[World], *, ends: bool = True) -> tuple[Found,
     """
     first, *later = worlds
     known = first.home.knowledge
-    given, since, over = set(dict(present(first))), dict[Place, int](), list[Found]()
+    given, since, over = set(dict(present(first))), dict[Place, _Spell](), list[Found]()
+    before = first
     for number, world in enumerate(later, 1):
         now = dict(present(world))
         given = given & now.keys()
@@ -87,23 +88,46 @@ def hazards_among(worlds: Sequence[World], *, ends: bool = True) -> tuple[Found,
             over += _over(known, world, place, since.pop(place), number, at_end=False)
         for place, is_one in now.items():
             if is_one and place not in given:
-                since.setdefault(place, number)
+                spell = since.setdefault(place, _Spell(number))
+                if known.hazards[place[0]].unused and _is_used(before, world, place[1][0]):
+                    spell.use(number)
+        before = world
     last = worlds[-1]
-    for place, step in since.items():
-        over += _over(known, last, place, step, len(worlds), at_end=True, counts=ends)
+    for place, spell in since.items():
+        over += _over(known, last, place, spell, len(worlds), at_end=True, counts=ends)
     return tuple(sorted(over, key=lambda found: (found.step, found.hazard.name, found.things)))
 
 
+class _Spell:
+    """The time for which a hazard lasts: its first step, and its longest part in which its thing was not used."""
+
+    def __init__(self, step: int) -> None:
+        self.step, self._used, self._longest = step, step, 0
+
+    def use(self, step: int) -> None:
+        """Count anew from a step."""
+        self._longest, self._used = self.longest(step), step
+
+    def longest(self, end: int) -> int:
+        """Return the ticks of the longest part without use, up to a step."""
+        return max(self._longest, end - self._used)
+
+
+def _is_used(before: World, world: World, i: int) -> bool:
+    """Return whether a thing came into another or out of it in a tick."""
+    return edge_rows.contents(before, i) != edge_rows.contents(world, i)
+
+
 def _over(
-    known: Knowledge, world: World, place: Place, step: int, end: int, *, at_end: bool, counts: bool = False
+    known: Knowledge, world: World, place: Place, spell: _Spell, end: int, *, at_end: bool, counts: bool = False
 ) -> Iterator[Found]:
     """Yield a hazard that is over, or in which the program ended, if it `counts` or lasted long enough."""
     name, things = place
     hazard = known.hazards[name]
-    if counts or end - step >= max(1, hazard.after):
+    if counts or spell.longest(end) >= max(1, hazard.after):
         home = world.home
         ids, classes = tuple(home.ids[i] for i in things), tuple(home.classes[i] for i in things)
-        yield Found(hazard, ids, classes, step, end - step, at_end)
+        yield Found(hazard, ids, classes, spell.step, end - spell.step, at_end)
 
 
 def present(world: World) -> Iterator[tuple[Place, bool]]:
@@ -205,9 +229,11 @@ def _matches(reading: Reading, case: _Case, variables: tuple[str, ...]) -> Itera
 
 
 def _attended(world: World, i: int) -> bool:
-    """Return whether a character is in the room of a thing."""
+    """Return whether a character is in the room of a thing, or in reach of it from another."""
     room = edge_rows.room_of(world, i)
-    return room >= 0 and any(edge_rows.agent_room(world, agent) == room for agent in world.agents)
+    if room >= 0 and any(edge_rows.agent_room(world, agent) == room for agent in world.agents):
+        return True
+    return any(edge_rows.is_near(world, agent, i, near_hands=True) for agent in world.agents)
 
 
 def _everybody_lies(world: World) -> bool:

@@ -11,7 +11,7 @@ from hearth.kb.loading.process_rows import MOST_TICKS
 from hearth.kb.loading.source_files import Entry, Faults
 
 _SHAPES = {"while": TEXT, "say": TEXT, "source": TEXT}
-_FLAGS = ("alone", "asleep")
+_FLAGS = ("alone", "asleep", "unused")
 _KEYS = ("while", *_FLAGS, "after", "severity", "say", "source")
 
 
@@ -50,8 +50,8 @@ def _hazard(name: str, entry: Entry, derived: Derived, faults: Faults) -> Hazard
     if not _is_sentence(say, "y" in free(condition)):
         faults.at(entry, f"`say` of {name} is {say!r:.60}", "a sentence with {x}, and {y} where the row names a y")
         return None
-    alone, asleep = (fields.get(key) is True for key in _FLAGS)
-    return Hazard(name, condition, alone, asleep, after, severity, say, str(fields.get("source") or ""))
+    alone, asleep, unused = (fields.get(key) is True for key in _FLAGS)
+    return Hazard(name, condition, alone, asleep, unused, after, severity, say, str(fields.get("source") or ""))
 
 
 def _is_sentence(text: str, second: bool) -> bool:
