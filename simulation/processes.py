@@ -14,7 +14,7 @@ from hearth.schemas.vocabulary import STATES
 from hearth.simulation.actions.literal_effects import made
 from hearth.simulation.process_plan import Moment, Running, here
 from hearth.simulation.stale_processes import Asked, stale
-from hearth.simulation.world.action_set_3_states import WIDTH
+from hearth.simulation.world.action_set_3_states import WIDTH, is_wide
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import CONTENTS, NOTHING
 from hearth.simulation.world.process_ticks import SETTLED, STILL, GoingOn, Ticks, ticks_left
@@ -39,6 +39,11 @@ def widened(world: World) -> World:
     wide = World(home, known[0], world.agents, world.moved)
     wide.settled = known[1]
     return wide
+
+
+def as_wide_as(start: World, other: World) -> World:
+    """Return the start of a run beside another of its worlds: widened if that one has the further states."""
+    return widened(start) if is_wide(other) else start
 
 
 _START = -5

@@ -10,6 +10,7 @@ from hearth.schemas.goals import Goal
 from hearth.scoring.signature import signature
 from hearth.simulation.engine import Execution
 from hearth.simulation.goals import Progress, Watch
+from hearth.simulation.processes import as_wide_as
 from hearth.simulation.world.world import World
 
 
@@ -65,7 +66,7 @@ class Achieved(NamedTuple):
 
         A thing that held at the start counts for nothing: where one of two lamps was on, `ON(lamp)` asks for the other.
         """
-        before = Progress.at(goal, start)
+        before = Progress.at(goal, as_wide_as(start, final))
         return cls(before, tuple(_gained(before, _at(before, final))))
 
     def score(self, final: World | None) -> GoalScore:

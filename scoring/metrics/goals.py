@@ -8,6 +8,7 @@ from hearth.schemas.graph import Edge
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.vocabulary import EVERY_STATE
 from hearth.scoring.metrics.final_graph import nodes_of
+from hearth.simulation.processes import as_wide_as
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.moved_edges import INSIDE, NOTHING, ON
 from hearth.simulation.world.world import World
@@ -19,8 +20,10 @@ LASTING = ("ON", "INSIDE", *HANDS)
 def goal_of(start: World, final: World) -> Goal:
     """Return the achievements of an execution as class literals: states set, and objects put ON, INSIDE or in a hand.
 
-    Literals that held at the start, and INSIDE a room, do not count. Both worlds are of one home.
+    Literals that held at the start, and INSIDE a room, do not count. Both worlds are of one home; of action set 3 all
+    states count, those that a process brings about (HOT) and those of things that are GONE too.
     """
+    start = as_wide_as(start, final)
     nodes = nodes_of(final.home)
     counts: Counter[Literal[Name]] = Counter()
 
