@@ -98,6 +98,7 @@ def sheet(found: Sequence[Case]) -> Iterator[str]:
         until = "to the end of the program" if case.found.at_end else f"for {case.found.lasted} steps"
         yield f"- since: after step {case.found.step} of {end}, {until}"
         yield f"- the thing is in: {_room(case.execution.worlds[case.found.step], case.found.things[0])}"
+        yield from _at_start(case)
         yield ""
         yield "```"
         yield f" 0 in {_where(case.execution.worlds[0])}"
@@ -108,6 +109,17 @@ def sheet(found: Sequence[Case]) -> Iterator[str]:
             yield f"{number:>2} {print_step(step):<60} in {_where(world):<20}{' <- hazard' if held else ''}".rstrip()
         yield "```"
         yield ""
+
+
+def _at_start(case: Case) -> Iterator[str]:
+    """Yield where the second thing of a hazard is at the start, if it is with the first one."""
+    things, start = (
+        [case.execution.worlds[0].home.index[thing] for thing in case.found.things],
+        case.execution.worlds[0],
+    )
+    if len(things) > 1 and (edge_rows.on(start, things[1]) | edge_rows.inside(start, things[1])) >> things[0] & 1:
+        first, second = case.found.classes
+        yield f"- from the start on, the {second} is on or in the {first}"
 
 
 def _steps(execution: Execution) -> Iterator[tuple[object, World]]:

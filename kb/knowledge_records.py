@@ -101,7 +101,7 @@ class Hazard:
     Attributes:
         name: of its row.
         condition: a formula of a thing `x`, and of a second thing `y` where it names one.
-        alone: whether it is one only while nobody is in the room of x.
+        alone: whether it is one only while no grown person is in the room of x.
         asleep: whether it is one only while every character lies down.
         unused: whether its ticks are counted anew whenever a thing comes into x or out of it.
         after: the ticks for which it has to last; 0 for at once.

@@ -26,7 +26,8 @@ from hearth.simulation.engine import Execution
 from hearth.simulation.processes import widened
 from hearth.simulation.rules import CONSEQUENCES
 from hearth.simulation.world import edge_rows
-from hearth.simulation.world.bits import indices
+from hearth.simulation.world.bits import indices, mask_of
+from hearth.simulation.world.home import Home
 from hearth.simulation.world.states import LYING
 from hearth.simulation.world.world import World
 
@@ -229,11 +230,26 @@ def _matches(reading: Reading, case: _Case, variables: tuple[str, ...]) -> Itera
 
 
 def _attended(world: World, i: int) -> bool:
-    """Return whether a character is in the room of a thing, or in reach of it from another."""
+    """Return whether a character or a grown person is in the room of a thing, or a character in reach of it."""
     room = edge_rows.room_of(world, i)
     if room >= 0 and any(edge_rows.agent_room(world, agent) == room for agent in world.agents):
         return True
-    return any(edge_rows.is_near(world, agent, i, near_hands=True) for agent in world.agents)
+    if any(edge_rows.is_near(world, agent, i, near_hands=True) for agent in world.agents):
+        return True
+    return room >= 0 and any(edge_rows.room_of(world, person) == room for person in indices(_grown(world.home)))
+
+
+def _grown(home: Home) -> int:
+    """Return the grown people of a home who are no characters."""
+    grown: int | None = home.worked_out.get("grown")
+    if grown is None:
+        people = home.properties["PERSON"] & ~home.characters
+        grown = mask_of(i for i in indices(people) if home.classes[i] != CHILD)
+        home.worked_out["grown"] = grown
+    return grown
+
+
+CHILD = "child"
 
 
 def _everybody_lies(world: World) -> bool:

@@ -1,4 +1,4 @@
-"""The goal that a program reaches by action set 3 has the states that acts and processes bring about, also lasting harm."""
+"""The goal that a program reaches by action set 3 has the states that acts and processes bring about."""
 
 import pytest
 from recipes.recipe_runs import Recipe, home, program_of

@@ -140,6 +140,57 @@ def test_a_burner_that_is_left_is_a_hazard_once_it_lasts_or_the_program_ends():
     assert [(each.lasted, each.at_end) for each in hazards(long)] == [(7, False)]
 
 
+def with_people(*names: str) -> World:
+    """The kitchen with the stove off and people who are no characters."""
+    start = kitchen()
+    people = [node(20 + number, name, properties=("PERSON",)) for number, name in enumerate(names)]
+    graph = start.graph()
+    edges = (*graph.edges, *(Edge(person.id, "INSIDE", 1) for person in people))
+    return World.start(Home.from_graph(EnvironmentGraph((*graph.nodes, *people), edges), "", KNOWN))
+
+
+@pytest.mark.parametrize(("people", "number"), [(("woman",), 0), (("child",), 1), (("child", "man"), 0)])
+def test_a_grown_person_looks_after_a_burner_and_a_child_does_not(people, number):
+    assert len(hazards(ran(with_people(*people), "SwitchOn 4", "Walk 2", "Wait", "Wait"))) == number
+
+
+def fridge_in_use(*texts: str):
+    """Return the hazards of acts with a fridge (4) that stands open, and milk (5) on a table (6) next to it."""
+    nodes = [
+        node(1, "kitchen"),
+        node(3, "character", properties=("PERSON",)),
+        node(4, "fridge", properties=("CAN_OPEN", "CONTAINERS"), states=("CLOSED",)),
+        node(5, "milk", properties=("GRABBABLE",)),
+        node(6, "table", properties=("SURFACES",)),
+    ]
+    edges = [Edge(n.id, "INSIDE", 1) for n in nodes[1:]] + [Edge(5, "ON", 6)]
+    edges += [Edge(one, "CLOSE", other) for one in (3, 4, 5, 6) for other in (3, 4, 5, 6) if one != other]
+    return hazards(ran(World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "", KNOWN)), *texts))
+
+
+def test_a_fridge_stands_open_once_nothing_goes_in_or_out_for_long():
+    waits, use = ["Wait"] * 9, ["Grab 5", "PutIn 5 4"]
+    assert fridge_in_use("Open 4", *waits, *use, *waits, "Close 4") == ()
+    (idle,) = fridge_in_use("Open 4", *waits, *waits, "Close 4")
+    assert (idle.hazard.name, idle.step, idle.lasted) == ("fridge_open", 1, 19)
+    (before_use,) = fridge_in_use("Open 4", *waits, *waits, *use, "Close 4")
+    assert (before_use.step, before_use.lasted) == (1, 21)
+    (left_open,) = fridge_in_use("Open 4", *use)
+    assert left_open.at_end
+
+
+def test_a_bath_by_candle_light_is_no_sleep():
+    person, bath = node(3, "character", properties=("PERSON",)), node(5, "bathtub", properties=("LIEABLE",))
+    nodes = (node(1, "bathroom"), person, node(4, "candle", properties=("HAS_SWITCH",), states=("OFF",)), bath)
+    edges = [Edge(n.id, "INSIDE", 1) for n in nodes[1:]]
+    edges += [Edge(one, "CLOSE", other) for one in (3, 4, 5) for other in (3, 4, 5) if one != other]
+    acts = ("SwitchOn 4", "Lie 5", "Wait", "Wait", "Wait")
+    assert hazards(ran(World.start(Home.from_graph(EnvironmentGraph(nodes, tuple(edges)), "", KNOWN)), *acts)) == ()
+    bed = tuple(node(5, "bed", properties=("LIEABLE",)) if n.id == 5 else n for n in nodes)
+    (asleep,) = hazards(ran(World.start(Home.from_graph(EnvironmentGraph(bed, tuple(edges)), "", KNOWN)), *acts))
+    assert asleep.hazard.name == "candle_asleep"
+
+
 def test_what_a_home_has_at_the_start_is_nobodys_doing():
     assert hazards(ran(kitchen("ON"), "Walk 2", *["Wait"] * 8)) == ()
 
