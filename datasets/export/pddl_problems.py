@@ -20,14 +20,14 @@ from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.pddl_domain import planning_domain, relation_predicate
 from hearth.datasets.export.program_batches import Wanted, runs, write
 from hearth.datasets.format.row_conversion import change_of
-from hearth.datasets.published_program import Run
 from hearth.datasets.verify import StoredHomes
 from hearth.kb.action_sets import LATEST
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.tools.pddl import LIMITS, limit_predicate, option_predicate, options, predicate, unary_predicates
 from hearth.schemas.graph import Edge
-from hearth.schemas.graph_change import compose
+from hearth.schemas.graph_change import Change, compose
 from hearth.schemas.vocabulary import EVERY_STATE, STATE_ID
+from hearth.simulation.engine import Execution
 from hearth.simulation.rules import DEFAULT, RULES, Rules
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.action_set_3_states import rows_with_further
@@ -38,6 +38,9 @@ from hearth.storage.names import file_name, inside
 
 WANTED = frozenset({"ON", "INSIDE", "HOLDS_RH", "HOLDS_LH"})
 """Relations of goals."""
+
+States = tuple[tuple[int, str, bool], ...]
+Edges = tuple[tuple[Edge, bool], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +60,8 @@ class Task:
     name: str
     world: World
     objects: tuple[int, ...]
-    states: tuple[tuple[int, str, bool], ...]
-    edges: tuple[tuple[Edge, bool], ...]
+    states: States
+    edges: Edges
     program_id: str = ""
     rules: Rules = DEFAULT
 
@@ -90,18 +93,27 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
 
     homes = StoredHomes(dataset)
     for _, run in runs(dataset, wanted):
-        states, edges = _goal(run, dataset.knowledge)
+        row = run.row
+        states, edges = _goal(compose(map(change_of, row["ticks"])), dataset.knowledge)
         if states or edges:
-            world = start_of(run.row["environment"], run.home, homes)
-            named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
-            objects = tuple(_objects(world, named))
-            of, rules = run.row["program_id"], RULES[run.row["rules"]]
-            yield Task(run.row["execution_id"], world, objects, states, edges, of, rules)
+            world = start_of(row["environment"], run.home, homes)
+            yield _task(row["execution_id"], world, states, edges, row["program_id"], RULES[row["rules"]])
 
 
-def _goal(run: Run, knowledge: Knowledge) -> tuple[tuple[tuple[int, str, bool], ...], tuple[tuple[Edge, bool], ...]]:
-    """Return the net change of all ticks."""
-    whole = compose(map(change_of, run.row["ticks"]))
+def task_of(execution: Execution, name: str = "") -> Task | None:
+    """Return the planning task of an execution; None if it has no goal."""
+    start = execution.worlds[0]
+    states, edges = _goal(execution.final.changes(start), start.home.knowledge)
+    return _task(name, start, states, edges, "", execution.rules) if states or edges else None
+
+
+def _task(name: str, world: World, states: States, edges: Edges, program_id: str, rules: Rules) -> Task:
+    named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
+    return Task(name, world, tuple(_objects(world, named)), states, edges, program_id, rules)
+
+
+def _goal(whole: Change, knowledge: Knowledge) -> tuple[States, Edges]:
+    """Return the goal of a net change."""
     states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
     states = [each for each in states if each[1] in STATE_ID or (each[2] and knowledge.achieving(each[1]))]
     edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
