@@ -3,13 +3,14 @@
     python benchmarks/filmed_recipes.py OUT [--films 40] [--seed 1] [--only "Fried egg,Iron a shirt"]
 
 Recipes are drawn by a seed, sampled, run and filmed in our homes in turn. A row of a sheet is a film by its own camera:
-a frame in the middle of each of its last acts besides walks, and its end. OUT has a sheet of every five films.
+a frame of each of its last acts besides walks, one of a row of waits, and its end. OUT has a sheet of every five films.
 """
 
 from __future__ import annotations
 
 import argparse
 import random
+from itertools import groupby
 from pathlib import Path
 
 import benchmark_cases
@@ -43,7 +44,8 @@ def film_row(recipe: Recipe, place: str) -> Image:
     graph = library.load_graph(place, KNOWN)
     trajectory = trajectory_of(trial.execution, graph, KNOWN, seed=3)
     found = spans(trajectory)
-    acts = [span for span in found if not {step.action for step in span.steps} & WALKS][1 - FRAMES :]
+    done = [span for span in found if span.steps and not {step.action for step in span.steps} & WALKS]
+    acts = [last for _, (*_, last) in groupby(done, lambda span: span.steps)][1 - FRAMES :]
     taken = list(frames(trajectory, RATE))
     times = [span.start + 0.6 * (span.end - span.start) for span in acts]
     selector = CameraSelector(trajectory, graph, AUTO, SIZE)
