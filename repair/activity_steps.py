@@ -58,7 +58,8 @@ def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
     Only devices switched on, objects put somewhere and where one sat or lay count; objects are held or opened for
-    another step's sake.
+    another step's sake. A device that switches itself off in time counts while it is on at the end: that it stays so
+    is no effect that a repair could be held to.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -76,12 +77,15 @@ def milestones(execution: Execution) -> Postconditions:
                 found.append(fact)
         for fact in now:
             since.setdefault(fact, tick)
+    kept = frozenset(facts(worlds[-1], nodes, ("ON",), ()))
+    found += sorted((fact for fact in last - first if fact.target is None and fact not in kept), key=str)
     return tuple(dict.fromkeys(found))
 
 
 def _worked_with(world: World, nodes: Mapping[Key, int]) -> list[Literal[Key]]:
     """Return the devices switched on, the objects ON or INSIDE others, and the seats of characters."""
-    found = facts(world, nodes, ("ON",), ("ON", "INSIDE"))
+    switched = (Literal("ON", (key,)) for key, node in nodes.items() if world.has_state(node, "ON"))
+    found = dict.fromkeys((*facts(world, nodes, ("ON",), ("ON", "INSIDE")), *switched))
     return [f for f in found if f.target is None or CHARACTER_CLASS not in (f.subject[0], f.target[0]) or _seated(f)]
 
 

@@ -118,3 +118,11 @@ def test_a_thing_is_of_use_after_the_last_time_it_was_acted_on():
     assert not _used_after(program, "Open", ("book", 1), ways)
     assert _used_after(program.with_steps(program.steps[:2]), "Open", ("book", 1), ways)
     assert _used_after(program, "Close", ("book", 1), ways)
+
+
+@pytest.mark.parametrize("name", ["coffe_maker", "dishwasher"])
+def test_by_set_3_switching_on_what_ends_by_itself_is_part_of_a_sketch(name):
+    known = default().of_set(3)
+    place = Home.from_graph(library.load_graph("maple", known), "maple", known)
+    program = program_of("", "", f"[Walk] <{name}> (1)", f"[Close] <{name}> (1)", f"[SwitchOn] <{name}> (1)")
+    assert sketch(program, [place], known)[-1]
