@@ -42,7 +42,7 @@ def widened(world: World) -> World:
 
 
 def as_wide_as(start: World, other: World) -> World:
-    """Return the start of a run beside another of its worlds: widened if that one has the further states."""
+    """Return the start of a run, widened if another of its worlds has the further states."""
     return widened(start) if is_wide(other) else start
 
 
