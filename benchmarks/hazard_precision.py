@@ -32,6 +32,9 @@ from hearth.simulation.world.world import World
 from hearth.storage.rejects import Reject
 
 CORPUS = Path(__file__).resolve().parents[1] / "data_raw"
+ANSWERS = Path(__file__).with_name("hazard_answers.csv")
+"""Answers of a second pair of eyes that had seen neither code nor rules; asked for all programs by seed 1."""
+
 KNOWN = default().of_set(3)
 
 
@@ -161,14 +164,14 @@ def main() -> None:
     parser.add_argument("--least", type=int, default=60, help="hazards that are drawn at least")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sheet", type=Path, help="where the sheet is written")
-    parser.add_argument("--answers", type=Path, help="lines `id,yes|no,reason`")
+    parser.add_argument("--answers", type=Path, default=ANSWERS, help="lines `id,yes|no,reason`")
     asked = parser.parse_args()
     found, first, drawn, failed = cases(asked.seed, asked.programs, asked.least)
     print(f"{asked.programs} programs bring {first} hazards; {drawn} programs bring {len(found)}; {failed} do not run")
     print(", ".join(f"{name} {count}" for name, count in Counter(c.found.hazard.name for c in found).most_common()))
     if asked.sheet:
         asked.sheet.write_text("\n".join(sheet(found)), encoding="utf-8")
-    for line in score(found, asked.answers) if asked.answers else ():
+    for line in score(found, asked.answers):
         print(line)
 
 
