@@ -39,14 +39,14 @@ def table(
       hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl
       hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl --model GPT-4o --ability action_sequencing
     """
-    from hearth.interop.eai.model_table import MEASURED, SOURCE
+    from hearth.interop.eai.model_table import SOURCE
     from hearth.interop.eai.model_table import table as figures
-    from hearth.interop.eai.wheel import Wheel
+    from hearth.interop.eai.wheel import ABILITIES, Wheel
     from hearth.kb.loading.load import default
 
     for name in abilities or ():
-        if name not in MEASURED:
-            raise typer.BadParameter(f"one of {', '.join(MEASURED)}", param_hint="--ability")
+        if name not in ABILITIES:
+            raise typer.BadParameter(f"one of {', '.join(ABILITIES)}", param_hint="--ability")
     rows = list(figures(Wheel(wheel), default(), models or (), abilities or ()))
     compared = [row for row in rows if row["agrees"] is not None]
     near = sum(row["agrees"] for row in compared)
@@ -175,10 +175,11 @@ def tasks(count: int = 500, seed: int = 0, *, out: Path, as_json: bool = False) 
 
 @app.command()
 def score(file: Path, answers: Path, as_json: bool = False) -> None:
-    """Score a model's answers to our own tasks: goals by precision, recall and F1, plans by running them.
+    """Score a model's answers to our own tasks: goals, subgoals, plans and operators.
 
-    ANSWERS has a line of JSON for each answer: {"id": TASK, "ability": NAME, "answer": TEXT}. Answers to
-    `goal_interpretation` and `action_sequencing` are scored; of others the number is printed.
+    ANSWERS has a line of JSON for each answer: {"id": TASK, "ability": NAME, "answer": TEXT}. Goals are scored by
+    precision, recall and F1 of their facts, and operators by those of their predicates. Plans are run. Subgoals are
+    brought about one after the other. Answers to other tasks or abilities are counted.
 
     \b
     Example:
@@ -186,12 +187,10 @@ def score(file: Path, answers: Path, as_json: bool = False) -> None:
     """
     import orjson
 
-    from hearth.interop.eai.goal_interpretation import Counts
-    from hearth.interop.eai.own_tasks import interpretation_counts, plan_verdict
+    from hearth.interop.eai.own_scores import OwnScores
     from hearth.kb.loading.load import default
     from hearth.storage.input_files import read_input
 
-    known = default()
     try:
         tasks_by_id = {task["id"]: task for task in orjson.loads(read_input(file))}
         rows = [orjson.loads(line) for line in read_input(answers).splitlines() if line.strip()]
@@ -199,23 +198,13 @@ def score(file: Path, answers: Path, as_json: bool = False) -> None:
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         message = f"these are not tasks of `challenge eai tasks`, or not answers to them: {str(error)[:100]}"
         raise HearthError.of(Code.BAD_JSON, message, file=str(file)) from error
-    counts, plans, others = Counts(), [], 0
+    scores = OwnScores()
     for task, row in asked:
-        ability = row.get("ability")
-        if task is not None and ability == "goal_interpretation":
-            counts = counts.plus(Counts(*interpretation_counts(task, str(row.get("answer", "")))))
-        elif task is not None and ability == "action_sequencing":
-            plans.append(plan_verdict(task, str(row.get("answer", "")), known))
-        else:
-            others += 1
-    precision, recall, f1 = counts.scores()
-    shares = [round(100 * sum(each[k] for each in plans) / max(len(plans), 1), 2) for k in (0, 1)]
-    figures = {"goal_precision": precision, "goal_recall": recall, "goal_f1": f1, "plans": len(plans),
-               "plans_that_run": shares[0], "plans_that_reach_the_goal": shares[1], "not_scored": others}  # fmt: skip
+        scores.add(task, str(row.get("ability", "")), str(row.get("answer", "")), default())
     if as_json:
-        output.emit(figures)
+        output.emit(scores.figures())
     else:
-        output.figures(figures)
+        output.figures(scores.figures())
 
 
 def _say(kind: str, finding: Any) -> None:

@@ -19,7 +19,7 @@ from hearth.schemas.program import Program, Step
 from hearth.simulation.engine import act, run
 from hearth.simulation.goal_text import read_goal
 from hearth.simulation.goals import Progress
-from hearth.simulation.rules import EVOLVING_GRAPH
+from hearth.simulation.rules import EVOLVING_GRAPH, Rules
 from hearth.simulation.world.world import World
 
 MOST_BRANCHES = 256
@@ -77,8 +77,7 @@ def judged(wheel: Wheel, answer: Answer, knowledge: Knowledge) -> Verdict:
 def _as_scored(subgoals: Sequence[str], there: TaskWorld) -> list[Atom] | Unread:
     """Return the subgoals one after the other as the interface reads them.
 
-    It passes over texts without brackets, takes one part of `or` by chance (the first here), and cannot read negations
-    and acts without arguments.
+    It passes over texts without brackets, takes one part of `or` by chance (the first here), and cannot read negations.
     """
     kept = [f"{each}()" if each in ALONE else each.split(" or ")[0] for each in subgoals
             if each in ALONE or re.search(r"\w+\(.*?\)", each)]  # fmt: skip
@@ -89,8 +88,6 @@ def _as_scored(subgoals: Sequence[str], there: TaskWorld) -> list[Atom] | Unread
     atoms = atoms_of(formula)
     if any(arity(atom.name) is None for atom in atoms):
         return Unread.HALLUCINATION
-    if any(not atom.terms for atom in atoms):
-        return Unread.PARSING
     if any(arity(atom.name) != len(atom.terms) or not all(_is_there(term, there) for term in atom.terms)
            for atom in atoms):  # fmt: skip
         return Unread.HALLUCINATION
@@ -165,9 +162,8 @@ def _by_ours(there: TaskWorld, subgoals: Sequence[str], knowledge: Knowledge) ->
     formulas = read_subgoals(subgoals, there.start)
     goal = None if formulas is None else read_goal({"vh_goal": there.task.record["vh_goal"]}, there.start.home)
     runs = False
-    for acts in () if formulas is None else achieved(there.start, formulas, knowledge):
+    for steps in () if formulas is None else achieved(there.start, formulas, knowledge):
         runs = True
-        steps = tuple(_step(name, terms, knowledge) for name, terms in acts)
         execution = run(there.start, Program(steps=steps), EVOLVING_GRAPH)
         if goal is not None and execution.failure is None and Progress.of(goal, execution).satisfied:
             return True, True
@@ -193,8 +189,10 @@ def read_subgoals(subgoals: Sequence[str], start: World) -> list[Formula] | None
     return found or None
 
 
-def achieved(start: World, subgoals: Sequence[Formula], knowledge: Knowledge) -> Iterator[list[Act]]:
-    """Yield the acts of runs in which each subgoal comes true, in their order.
+def achieved(
+    start: World, subgoals: Sequence[Formula], knowledge: Knowledge, rules: Rules = EVOLVING_GRAPH
+) -> Iterator[tuple[Step, ...]]:
+    """Yield the steps of runs in which each subgoal comes true, in their order.
 
     A subgoal that holds already needs no act; each part of `or` is tried; every act must be done.
     """
@@ -206,9 +204,10 @@ def achieved(start: World, subgoals: Sequence[Formula], knowledge: Knowledge) ->
         for subgoal in (part for parts in chosen for part in parts):
             further: list[Run] = []
             for done in open_runs[:MOST_BRANCHES]:
-                further += _brought_about(done, subgoal, me, knowledge)
+                further += _brought_about(done, subgoal, me, knowledge, rules)
             open_runs = further
-        yield from (list(done.acts) for done in open_runs)
+        for done in open_runs:
+            yield tuple(_step(name, terms, knowledge) for name, terms in done.acts)
 
 
 def _choices(formula: Formula) -> Iterator[list[Formula]]:
@@ -223,7 +222,7 @@ def _choices(formula: Formula) -> Iterator[list[Formula]]:
             yield [atom for parts in chosen for atom in parts]
 
 
-def _brought_about(done: Run, subgoal: Formula, me: str, knowledge: Knowledge) -> list[Run]:
+def _brought_about(done: Run, subgoal: Formula, me: str, knowledge: Knowledge, rules: Rules) -> list[Run]:
     here = Run(done.worlds[-1:], ())
     if fulfilled(subgoal, here):
         return [done]
@@ -231,17 +230,17 @@ def _brought_about(done: Run, subgoal: Formula, me: str, knowledge: Knowledge) -
         return []
     found: list[Run] = []
     for way in ways(subgoal, done.worlds[-1], me) if subgoal.name not in ALONE else [[(subgoal.name, ())]]:
-        after = _strictly(done, way, knowledge)
+        after = _strictly(done, way, knowledge, rules)
         if after is not None and fulfilled(subgoal, Run(after.worlds[-2:], after.acts[-1:])):
             found.append(after)
     return found
 
 
-def _strictly(done: Run, way: Sequence[Act], knowledge: Knowledge) -> Run | None:
+def _strictly(done: Run, way: Sequence[Act], knowledge: Knowledge, rules: Rules) -> Run | None:
     """Return a run with further acts; an approach that is not needed is left out."""
     worlds, acts = list(done.worlds), list(done.acts)
     for name, terms in way:
-        result = act(worlds[-1], _step(name, terms, knowledge), EVOLVING_GRAPH)
+        result = act(worlds[-1], _step(name, terms, knowledge), rules)
         if isinstance(result, World):
             worlds.append(result)
             acts.append((name, terms))

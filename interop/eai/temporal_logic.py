@@ -62,7 +62,7 @@ class Run(NamedTuple):
         return Run(self.worlds[count:], self.acts[count:])
 
 
-_WORDS = re.compile(r"\s*([a-zA-Z_-]\w*(?:\.[0-9]+)?|[(),.])")
+_WORDS = re.compile(r"\s*([a-zA-Z_-][\w-]*(?:\.[0-9]+)?|[(),.])")
 
 
 def read_formula(text: str) -> Formula:

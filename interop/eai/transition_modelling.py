@@ -43,7 +43,7 @@ def _operator_texts(text: str) -> dict[str, str]:
     body = re.sub(r"\s+", " ", re.sub(r";.*$", "", body, flags=re.MULTILINE))
     places = list(re.finditer(r"\(:action\s+(\w+)", body))
     ends = [place.start() for place in places[1:]] + [len(body)]
-    parts = {place[1]: body[place.end() : end] for place, end in zip(places, ends, strict=True)}
+    parts = {place[1]: body[place.end() : end] for place, end in zip(places, ends, strict=False)}
     needed = (":parameters", ":precondition", ":effect")
     return {name: part for name, part in parts.items() if all(word in part for word in needed)}
 
