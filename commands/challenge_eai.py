@@ -26,13 +26,17 @@ def table(
     wheel: Path,
     models: list[str] | None = None,
     abilities: list[str] | None = None,
+    planner: bool = False,
     every: bool = False,
     as_json: bool = False,
 ) -> None:
     """Print each model's figures from its stored answers: published, by the interface's rules, and by ours.
 
     A figure by the interface's rules is to lie within a point of the published one; the last line counts them. All
-    fifteen models take some minutes. Get the wheel by `pip download --no-deps virtualhome-eval==0.1.1`.
+    fifteen models take some minutes. With --planner, Fast Downward plans with each model's operators, which takes a
+    minute or more for each model and needs the extra `plan`.
+
+    Get the wheel by `pip download --no-deps virtualhome-eval==0.1.1`.
 
     \b
     Examples:
@@ -41,13 +45,16 @@ def table(
     """
     from hearth.interop.eai.model_table import SOURCE
     from hearth.interop.eai.model_table import table as figures
+    from hearth.interop.eai.operator_planning import OperatorPlanning
     from hearth.interop.eai.wheel import ABILITIES, Wheel
     from hearth.kb.loading.load import default
 
     for name in abilities or ():
         if name not in ABILITIES:
             raise typer.BadParameter(f"one of {', '.join(ABILITIES)}", param_hint="--ability")
-    rows = list(figures(Wheel(wheel), default(), models or (), abilities or ()))
+    read = Wheel(wheel)
+    planning = OperatorPlanning(read) if planner else None
+    rows = list(figures(read, default(), models or (), abilities or (), planning))
     compared = [row for row in rows if row["agrees"] is not None]
     near = sum(row["agrees"] for row in compared)
     if as_json:

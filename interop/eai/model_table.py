@@ -10,6 +10,7 @@ from typing import Any
 
 from hearth.interop.eai import action_sequencing, goal_interpretation, subgoal_decomposition
 from hearth.interop.eai.goal_interpretation import Counts
+from hearth.interop.eai.operator_planning import OperatorPlanning
 from hearth.interop.eai.transition_modelling import Operators
 from hearth.interop.eai.wheel import ABILITIES, Wheel
 from hearth.kb.knowledge import Knowledge
@@ -34,7 +35,11 @@ def published() -> dict[str, dict[str, str]]:
 
 
 def table(
-    wheel: Wheel, knowledge: Knowledge, models: Collection[str] = (), abilities: Collection[str] = ()
+    wheel: Wheel,
+    knowledge: Knowledge,
+    models: Collection[str] = (),
+    abilities: Collection[str] = (),
+    planner: OperatorPlanning | None = None,
 ) -> Iterator[Row]:
     """Yield the figures of models, a model after the other.
 
@@ -43,6 +48,7 @@ def table(
         knowledge: of its homes.
         models: the models to judge, by their names or the wheel's; all if empty.
         abilities: names of `ABILITIES`; all if empty.
+        planner: plans with the models' operators; without it their success is left out.
 
     Raises:
         HearthError: MISSING_FILE: the wheel has no answers; UNKNOWN_ID: no such model.
@@ -59,6 +65,10 @@ def table(
             raise HearthError.of(Code.UNKNOWN_ID, f"no model `{model[:60]}`", suggestion=f"one of {', '.join(there)}")
         for ability in abilities or ABILITIES:
             yield from _figures(wheel, knowledge, model, ability)
+            if ability == "transition_modeling" and planner is not None:
+                outcomes = list(filter(None, map(planner.planned, wheel.answers(ability, model))))
+                share = round(100 * sum(each.solved for each in outcomes) / max(len(outcomes), 1), 2)
+                yield _row(model, ability, "planner success", "transition_planner", share, None)
 
 
 def _figures(wheel: Wheel, knowledge: Knowledge, model: str, ability: str) -> Iterator[Row]:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from hearth.interop.eai.operator_repair import names_in, read, repaired, with_constants
 from hearth.interop.eai.transition_modelling import operators_of, parameters_of
 from hearth.interop.eai.wheel import RESOURCES, Answer, Wheel
 from hearth.schemas.diagnostics import HearthError
@@ -69,19 +70,28 @@ class OperatorPlanning:
             return None
         name = "_".join(self.titles[answer.task].split())
         problem = self.wheel.bytes_of(f"{RESOURCES}problem_pddl/{name}/{answer.task}.pddl").decode()
-        found = _solved(self.folder, self.domain_with(answer), problem)
-        return Outcome(answer.task, not found, found)
+        why = _solved(self.folder, *self.posed(answer, problem))
+        return Outcome(answer.task, not why, why)
 
-    def domain_with(self, answer: Answer) -> str:
-        """Return the domain with an answer's operators."""
-        operators = {name: tuple(each) for name, each in operators_of(answer.text).items()}
+    def posed(self, answer: Answer, problem: str) -> tuple[str, str]:
+        """Return the domain with an answer's operators, and a problem for it."""
         given = parameters_of(answer.text)
-        written = [_action(name, given[name], *operators[name]) for name in operators]
-        written += [
-            _action(name, row["action_parameters"], row["action_preconditions"], row["action_effects"])
-            for name, row in sorted(self.gold.items()) if name not in operators
-        ]  # fmt: skip
-        return self.domain + "\n".join(written) + ")"
+        parts = {name: repaired(given[name], *each) for name, each in operators_of(answer.text).items()}
+        parts |= {
+            name: (row["action_parameters"], row["action_preconditions"], row["action_effects"])
+            for name, row in sorted(self.gold.items()) if name not in parts
+        }  # fmt: skip
+        text = self.domain + "\n".join(_action(name, *each) for name, each in parts.items()) + ")"
+        return with_constants(text, problem, _names(parts.values()))
+
+
+def _names(parts: Iterable[tuple[str, str, str]]) -> Iterator[str]:
+    for _, *formulas in parts:
+        for text in formulas:
+            try:
+                yield from names_in(read(text))
+            except ValueError:
+                continue
 
 
 def _action(name: str, parameters: str, precondition: str, effect: str) -> str:
