@@ -1,7 +1,7 @@
 """Operators of models as planners of 2024 read them: later ones refuse names and variables that are not declared.
 
-Fast Downward of the interface's time took an undeclared name for an object of the problem, an undeclared variable of a
-precondition for one that some object fulfills, and passed over effects with such a variable.
+Fast Downward of the interface's time took an undeclared name for an object of the problem. A fact about an undeclared
+variable was never true in a condition, and an effect on one did nothing.
 """
 
 from __future__ import annotations
@@ -16,6 +16,9 @@ Expression = str | list[Any]
 """A word, or a bracketed list."""
 
 JOINS = frozenset({"and", "or", "not", "when", "imply", "forall", "exists", "="})
+NEVER = "hearth-never"
+"""A predicate that is never true."""
+
 _OBJECTS = re.compile(r"\(:objects(.*?)\)", re.DOTALL)
 
 
@@ -59,15 +62,7 @@ def repaired(parameters: str, precondition: str, effect: str) -> tuple[str, str,
     except ValueError:
         return parameters, precondition, effect
     known = {word for word in declared if isinstance(word, str) and word.startswith("?")}
-    free = sorted(set(_free(before, known)))
-    kept = _without_free(after, known)
-    more = "".join(f" {name}" for name in free)
-    # Parameters without a type end the list: those before may share a type that is written last.
-    text = f"({written(declared)[1:-1]}{more})"
-    renamed = {name: f"{name}-some" for name in free}
-    if more:
-        text = f"({written(declared)[1:-1]} {' '.join(renamed.values())} - object)"
-    return text, written(_renamed(before, renamed)), written(kept) if kept else "(and)"
+    return written(declared), written(_condition(before, known)), written(_effect(after, known) or ["and"])
 
 
 def _bound(expression: list[Any]) -> set[str]:
@@ -77,34 +72,36 @@ def _bound(expression: list[Any]) -> set[str]:
     return set()
 
 
-def _free(expression: Expression, known: set[str]) -> Iterator[str]:
-    if isinstance(expression, str):
-        if expression.startswith("?") and expression not in known:
-            yield expression
-        return
-    inner = known | _bound(expression)
-    for part in expression:
-        yield from _free(part, inner)
+def _free(literal: list[Any], known: set[str]) -> bool:
+    """Return whether a literal has a variable that is not declared."""
+    return any(isinstance(word, str) and word.startswith("?") and word not in known for word in literal)
 
 
-def _renamed(expression: Expression, names: dict[str, str]) -> Expression:
-    if isinstance(expression, str):
-        return names.get(expression, expression)
-    left = {name: new for name, new in names.items() if name not in _bound(expression)}
-    return [_renamed(part, left) for part in expression]
-
-
-def _without_free(expression: Expression, known: set[str]) -> Expression:
-    """Return an effect without its literals about variables that are not declared; `` where nothing is left."""
-    if isinstance(expression, str):
+def _condition(expression: Expression, known: set[str]) -> Expression:
+    """Return a condition in which facts about undeclared variables are never true."""
+    if isinstance(expression, str) or not expression:
         return expression
-    if not expression or expression[0] not in ("and", "when", "forall"):
-        return "" if any(_free(expression, known)) else expression
+    if expression[0] not in JOINS:
+        return [NEVER] if _free(expression, known) else expression
+    inner = known | _bound(expression)
+    quantified = expression[0] in ("forall", "exists")
+    return [part if quantified and place == 1 else _condition(part, inner) for place, part in enumerate(expression)]
+
+
+def _effect(expression: Expression, known: set[str]) -> Expression:
+    """Return an effect without its facts about undeclared variables; `` where nothing is left."""
+    if isinstance(expression, str) or not expression:
+        return expression
     inner = known | _bound(expression)
     if expression[0] == "and":
-        return ["and", *(part for part in (_without_free(each, inner) for each in expression[1:]) if part)]
-    last = _without_free(expression[-1], inner)
-    return [*expression[:-1], last] if last else ""
+        return ["and", *(part for part in (_effect(each, inner) for each in expression[1:]) if part)]
+    if expression[0] == "not":
+        return expression if _effect(expression[-1], known) else ""
+    if expression[0] in ("when", "forall"):
+        last = _effect(expression[-1], inner)
+        given = [_condition(part, inner) if expression[0] == "when" else part for part in expression[1:-1]]
+        return [expression[0], *given, last] if last else ""
+    return "" if _free(expression, known) else expression
 
 
 def names_in(expression: Expression) -> Iterator[str]:
@@ -126,4 +123,6 @@ def with_constants(domain: str, problem: str, names: Iterable[str]) -> tuple[str
     there = set(objects.lower().split())
     others = " ".join(sorted(set(names) - there - {"-"}))
     constants = f"(:constants {objects}{f' {others} - object' if others else ''})\n    "
-    return domain.replace("(:predicates", f"{constants}(:predicates", 1), _OBJECTS.sub("(:objects)", problem, count=1)
+    return domain.replace("(:predicates", f"{constants}(:predicates ({NEVER})", 1), _OBJECTS.sub(
+        "(:objects)", problem, count=1
+    )

@@ -110,8 +110,10 @@ def test_operators_are_read_as_earlier_planners_read_them():
         "(and (near ?c ?o) (inside ?o ?room))",
         "(and (held ?o) (not (inside ?o ?room)))",
     )
-    assert found == ("(?c - character ?o - object ?room-some - object)",
-                     "(and (near ?c ?o) (inside ?o ?room-some))", "(and (held ?o))")  # fmt: skip
+    assert found == ("(?c - character ?o - object)", "(and (near ?c ?o) (hearth-never))", "(and (held ?o))")
+    assert repaired("(?o)", "(not (near ?o ?any))", "(when (near ?any ?o) (held ?o))")[1:] == (
+        "(not (hearth-never))", "(when (hearth-never) (held ?o))",
+    )  # fmt: skip
     bound = "(exists (?r - object) (inside ?o ?r))"
     assert repaired("(?o)", bound, "(held ?o)") == ("(?o)", bound, "(held ?o)")
     assert repaired("(?o", "(a)", "(b)") == ("(?o", "(a)", "(b)")
