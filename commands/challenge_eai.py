@@ -72,17 +72,20 @@ def table(
 
 
 @app.command()
-def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_json: bool = False) -> None:
+def audit(
+    wheel: Path, models: list[str] | None = None, every: bool = False, out: Path | None = None, as_json: bool = False
+) -> None:
     """Count goals and verdicts of the interface that are wrong, and print a program that proves each kind.
 
-    Verdicts are those on the stored answers of the models that are named.
+    Verdicts are those on the stored answers of the models that are named. With --out all of them go into a page of
+    Markdown, each with its proof.
 
     \b
     Examples:
       hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl
-      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl --model mistral-large-2402
+      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl --model mistral-large-2402 --out audit.md
     """
-    from hearth.interop.eai.audit import Finding, wrong_goals, wrong_verdicts
+    from hearth.interop.eai.audit import Finding, page_of, wrong_goals, wrong_verdicts
     from hearth.interop.eai.wheel import Wheel
     from hearth.kb.loading.load import default
 
@@ -93,6 +96,11 @@ def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_
             listed = ", ".join(read.models("action_sequencing")) or "none, as the wheel has no answers"
             raise typer.BadParameter(f"models are {listed}", param_hint="--model")
         found += wrong_verdicts(read, known, model)
+    if out is not None:
+        from hearth.storage.chosen_files import write
+
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write(out, page_of(found).encode())
     if as_json:
         output.emit([finding._asdict() for finding in found])
         return

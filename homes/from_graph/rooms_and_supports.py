@@ -78,7 +78,7 @@ class Parts:
             self.parent[child] = (place, self._within(child) if word == "within" else word)
 
     def _within(self, child: int) -> str:
-        """Return how a thing goes with what is no container: sinks are let into counters, pillows lie on couches."""
+        """Return the word for a place in furniture without a container: sinks are let in, pillows lie on top."""
         shaped = form(self.nodes[child].class_name, self.knowledge)
         return "inside" if shaped is None or shaped.mount == "sunk" else "on"
 

@@ -221,6 +221,9 @@ def test_commands(tmp_path):
     path = written(tmp_path / "small.whl")
     result = call("challenge", "eai", "audit", path, "--model", "some-model")
     assert result.exit_code == 0 and "the goal asks for nothing" in result.output and "[GRAB] <cup>" in result.output
+    page = tmp_path / "audit.md"
+    result = call("challenge", "eai", "audit", path, "--model", "some-model", "--out", page)
+    assert result.exit_code == 0 and "Task 2_1, Watch TV" in page.read_text() and "    [GRAB] <cup>" in page.read_text()
     result = call("challenge", "eai", "table", path, "--ability", "action_sequencing", "--json")
     assert result.exit_code == 0 and json.loads(result.output)["compared"] == 0
     assert call("challenge", "eai", "table", path, "--ability", "cooking").exit_code == 2
