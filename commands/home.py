@@ -11,6 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.grouped_faults import alike, report
+from hearth.commands.homes_tried_out import try_out
 from hearth.commands.inputs import read_knowledge
 from hearth.kb.loading.load import default
 
@@ -133,42 +134,7 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
     return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
 
 
-@app.command(name="try")
-def try_out(
-    files: list[Path], programs: int = 10, seed: int = 0, source: list[Path] | None = None, as_json: bool = False
-) -> None:
-    """Try scene graphs out: names that are known, boxes that are used, faults, and programs of the corpus that run.
-
-    FILES are scene graphs of VirtualHome, or tasks of Watch-And-Help, O-WAH and C-WAH, as JSON or as the published
-    pickles; of a file of tasks each home is tried once. Programs are drawn from those whose things the home has. The
-    status is 1 if a name is unknown, furniture stands in other furniture, or a program does not run.
-
-    \b
-    Example:
-      hearth home try TrimmedTestScene1_graph.json test_env_set_help.pik
-    """
-    from dataclasses import asdict
-
-    from hearth.analysis.home_trials import drawn, tried
-    from hearth.commands import inputs
-    from hearth.interop.virtualhome.task_graphs import task_graphs
-
-    known = read_knowledge(None)
-    chosen = drawn(inputs.paths(source), known, seed)
-    trials = [tried(graph, name, chosen, programs, known, seed)
-              for file in files for name, graph in task_graphs(file, known)]  # fmt: skip
-    if as_json:
-        output.emit([asdict(trial) for trial in trials])
-    else:
-        heads = ("home", "nodes bound", "boxes used", "laid out", "in each other", "faults", "programs run")
-        output.table(heads, [trial.row() for trial in trials])
-        for trial in trials:
-            for words in (*trial.in_each_other, *(f"unknown class `{name}`" for name in trial.unknown)):
-                output.line(f"{trial.home}: {words}")
-            for code, count in trial.failures.items():
-                output.line(f"{trial.home}: {output.counted(count, 'program')} failed: {code}")
-    bad = sum(len(t.unknown) + len(t.in_each_other) + t.programs - t.ran for t in trials)
-    output.status(bad, strict=True)
+app.command(name="try")(try_out)
 
 
 @app.command()
