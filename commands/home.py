@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
 
 app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    help="The homes: list, show, check, convert, export, edit and generate them.",
+    no_args_is_help=True, add_completion=False, help="The homes: list, show, check, convert, edit and generate them."
 )
 
 
