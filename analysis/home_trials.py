@@ -82,7 +82,7 @@ def tried(
         seed: of environments.
 
     Raises:
-        HearthError: NO_ROOM, or faults of a graph that is no home.
+        HearthError: NO_ROOM, or faults of a graph that is not a home.
     """
     unknown = Counter(node.class_name for node in graph.nodes if knowledge.object_class(node.class_name) is None)
     boxes = sum(node.box is not None for node in graph.nodes)

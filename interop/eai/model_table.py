@@ -87,9 +87,9 @@ def _figures(wheel: Wheel, knowledge: Knowledge, model: str, ability: str) -> It
             yield _row(model, ability, f"{kind} F1", "", theirs[kind].scores()[2], ours[kind].scores()[2])
     elif ability == "subgoal_decomposition":
         found_subgoals = [subgoal_decomposition.judged(wheel, each, knowledge) for each in answers]
-        success, execution, ours, runs = subgoal_decomposition.shares(found_subgoals)
-        yield _row(model, ability, "success", "subgoal_success", success, ours)
-        yield _row(model, ability, "execution", "subgoal_execution", execution, runs)
+        success, execution, own_success, own_runs = subgoal_decomposition.shares(found_subgoals)
+        yield _row(model, ability, "success", "subgoal_success", success, own_success)
+        yield _row(model, ability, "execution", "subgoal_execution", execution, own_runs)
     elif ability == "transition_modeling":
         operators, theirs_sum, ours_sum = Operators(wheel), Counts(), Counts()
         for each in answers:

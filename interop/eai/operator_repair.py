@@ -105,7 +105,7 @@ def _effect(expression: Expression, known: set[str]) -> Expression:
 
 
 def names_in(expression: Expression) -> Iterator[str]:
-    """Yield the constants of an expression: what is no variable, no join and no predicate."""
+    """Yield the constants of an expression, without variables, joins and predicates."""
     if isinstance(expression, str):
         return
     quantified = expression and expression[0] in ("forall", "exists")
