@@ -26,28 +26,35 @@ def table(
     wheel: Path,
     models: list[str] | None = None,
     abilities: list[str] | None = None,
+    planner: bool = False,
     every: bool = False,
     as_json: bool = False,
 ) -> None:
     """Print each model's figures from its stored answers: published, by the interface's rules, and by ours.
 
     A figure by the interface's rules is to lie within a point of the published one; the last line counts them. All
-    fifteen models take some minutes. Get the wheel by `pip download --no-deps virtualhome-eval==0.1.1`.
+    fifteen models take some minutes. With --planner, Fast Downward plans with each model's operators, which takes a
+    minute or more for each model and needs the extra `plan`.
+
+    Get the wheel by `pip download --no-deps virtualhome-eval==0.1.1`.
 
     \b
     Examples:
       hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl
       hearth challenge eai table virtualhome_eval-0.1.1-py3-none-any.whl --model GPT-4o --ability action_sequencing
     """
-    from hearth.interop.eai.model_table import MEASURED, SOURCE
+    from hearth.interop.eai.model_table import SOURCE
     from hearth.interop.eai.model_table import table as figures
-    from hearth.interop.eai.wheel import Wheel
+    from hearth.interop.eai.operator_planning import OperatorPlanning
+    from hearth.interop.eai.wheel import ABILITIES, Wheel
     from hearth.kb.loading.load import default
 
     for name in abilities or ():
-        if name not in MEASURED:
-            raise typer.BadParameter(f"one of {', '.join(MEASURED)}", param_hint="--ability")
-    rows = list(figures(Wheel(wheel), default(), models or (), abilities or ()))
+        if name not in ABILITIES:
+            raise typer.BadParameter(f"one of {', '.join(ABILITIES)}", param_hint="--ability")
+    read = Wheel(wheel)
+    planning = OperatorPlanning(read) if planner else None
+    rows = list(figures(read, default(), models or (), abilities or (), planning))
     compared = [row for row in rows if row["agrees"] is not None]
     near = sum(row["agrees"] for row in compared)
     if as_json:
@@ -65,17 +72,20 @@ def table(
 
 
 @app.command()
-def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_json: bool = False) -> None:
+def audit(
+    wheel: Path, models: list[str] | None = None, every: bool = False, out: Path | None = None, as_json: bool = False
+) -> None:
     """Count goals and verdicts of the interface that are wrong, and print a program that proves each kind.
 
-    Verdicts are those on the stored answers of the models that are named.
+    Verdicts are those on the stored answers of the models that are named. With --out all of them go into a page of
+    Markdown, each with its proof.
 
     \b
     Examples:
       hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl
-      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl --model mistral-large-2402
+      hearth challenge eai audit virtualhome_eval-0.1.1-py3-none-any.whl --model mistral-large-2402 --out audit.md
     """
-    from hearth.interop.eai.audit import Finding, wrong_goals, wrong_verdicts
+    from hearth.interop.eai.audit import Finding, page_of, wrong_goals, wrong_verdicts
     from hearth.interop.eai.wheel import Wheel
     from hearth.kb.loading.load import default
 
@@ -86,6 +96,11 @@ def audit(wheel: Path, models: list[str] | None = None, every: bool = False, as_
             listed = ", ".join(read.models("action_sequencing")) or "none, as the wheel has no answers"
             raise typer.BadParameter(f"models are {listed}", param_hint="--model")
         found += wrong_verdicts(read, known, model)
+    if out is not None:
+        from hearth.storage.chosen_files import write
+
+        out.parent.mkdir(parents=True, exist_ok=True)
+        write(out, page_of(found).encode())
     if as_json:
         output.emit([finding._asdict() for finding in found])
         return
@@ -175,10 +190,11 @@ def tasks(count: int = 500, seed: int = 0, *, out: Path, as_json: bool = False) 
 
 @app.command()
 def score(file: Path, answers: Path, as_json: bool = False) -> None:
-    """Score a model's answers to our own tasks: goals by precision, recall and F1, plans by running them.
+    """Score a model's answers to our own tasks: goals, subgoals, plans and operators.
 
-    ANSWERS has a line of JSON for each answer: {"id": TASK, "ability": NAME, "answer": TEXT}. Answers to
-    `goal_interpretation` and `action_sequencing` are scored; of others the number is printed.
+    ANSWERS has a line of JSON for each answer: {"id": TASK, "ability": NAME, "answer": TEXT}. Goals are scored by
+    precision, recall and F1 of their facts, and operators by those of their predicates. Plans are run. Subgoals are
+    brought about one after the other. Answers to other tasks or abilities are counted.
 
     \b
     Example:
@@ -186,12 +202,10 @@ def score(file: Path, answers: Path, as_json: bool = False) -> None:
     """
     import orjson
 
-    from hearth.interop.eai.goal_interpretation import Counts
-    from hearth.interop.eai.own_tasks import interpretation_counts, plan_verdict
+    from hearth.interop.eai.own_scores import OwnScores
     from hearth.kb.loading.load import default
     from hearth.storage.input_files import read_input
 
-    known = default()
     try:
         tasks_by_id = {task["id"]: task for task in orjson.loads(read_input(file))}
         rows = [orjson.loads(line) for line in read_input(answers).splitlines() if line.strip()]
@@ -199,23 +213,13 @@ def score(file: Path, answers: Path, as_json: bool = False) -> None:
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         message = f"these are not tasks of `challenge eai tasks`, or not answers to them: {str(error)[:100]}"
         raise HearthError.of(Code.BAD_JSON, message, file=str(file)) from error
-    counts, plans, others = Counts(), [], 0
+    scores = OwnScores()
     for task, row in asked:
-        ability = row.get("ability")
-        if task is not None and ability == "goal_interpretation":
-            counts = counts.plus(Counts(*interpretation_counts(task, str(row.get("answer", "")))))
-        elif task is not None and ability == "action_sequencing":
-            plans.append(plan_verdict(task, str(row.get("answer", "")), known))
-        else:
-            others += 1
-    precision, recall, f1 = counts.scores()
-    shares = [round(100 * sum(each[k] for each in plans) / max(len(plans), 1), 2) for k in (0, 1)]
-    figures = {"goal_precision": precision, "goal_recall": recall, "goal_f1": f1, "plans": len(plans),
-               "plans_that_run": shares[0], "plans_that_reach_the_goal": shares[1], "not_scored": others}  # fmt: skip
+        scores.add(task, str(row.get("ability", "")), str(row.get("answer", "")), default())
     if as_json:
-        output.emit(figures)
+        output.emit(scores.figures())
     else:
-        output.figures(figures)
+        output.figures(scores.figures())
 
 
 def _say(kind: str, finding: Any) -> None:

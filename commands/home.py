@@ -11,6 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.grouped_faults import alike, report
+from hearth.commands.homes_tried_out import try_out
 from hearth.commands.inputs import read_knowledge
 from hearth.kb.loading.load import default
 
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
 
 app = typer.Typer(
-    no_args_is_help=True,
-    add_completion=False,
-    help="The homes: list, show, check, convert, export, edit and generate them.",
+    no_args_is_help=True, add_completion=False, help="The homes: list, show, check, convert, edit and generate them."
 )
 
 
@@ -131,6 +130,9 @@ def met(layout: GraphLayout) -> list[dict[str, Any]]:
     )
     rows = {"things": len(layout.graph.nodes), **{name: edges[name] for name in ("ON", "INSIDE", "CLOSE", "FACING")}}
     return [{"what": name, "all": count, "shown": count - lost[name]} for name, count in rows.items()]
+
+
+app.command(name="try")(try_out)
 
 
 @app.command()

@@ -34,6 +34,12 @@ MUST = 60.0
 """Worth of being ON a wall, a tile or a rug, in relations."""
 FREE_STANDING_WALL = 5.0
 """Worth of a place at a wall, in relations: furniture out in the room needs a reason."""
+BACKED_WALL = 10_000.0
+"""The same for furniture with a back, such as a closet: it stands in the room only where no wall is free."""
+AT_WALL = 0.1
+"""Metres within which furniture stands at a wall."""
+USED_FROM_FRONT = 0.4
+"""Metres of free depth before a thing from which it counts as used from its front, with its back to a wall."""
 
 
 class Crowd:
@@ -57,19 +63,22 @@ class Crowd:
 
 
 def furnish(crowd: Crowd, room_id: int, room: Room) -> bool:
-    """Place a room's things, with the things on and in them; return True when something of size found no place."""
+    """Place a room's things, with the things on and in them, those first that stand at walls.
+
+    Return True if something of size found no place, or no wall.
+    """
     parts = crowd.parts
     solids: list[Thing] = []
     kept = [zone for name, zone, _ in crowd.built.kept_free if name == room.name]
     short = False
-    for node in parts.roots(room_id):
-        shaped = form(parts.nodes[node].class_name, parts.knowledge)
-        if shaped is None:
-            continue
+    formed = [(node, form(parts.nodes[node].class_name, parts.knowledge)) for node in parts.roots(room_id)]
+    known = [(node, shaped) for node, shaped in formed if shaped is not None]
+    for node, shaped in sorted(known, key=lambda each: not _has_back(each[1])):
         spot = _best(crowd, room, node, shaped, solids, kept)
         if spot is None:
             short = True
             continue
+        short |= _has_back(shaped) and not _at_wall(spot[0], room)
         rect, yaw, low = spot
         box = box_over(rect, low, low + shaped.size[1])
         thing = Thing(str(node), parts.nodes[node].class_name, room.name, box, yaw, shaped.mount,
@@ -167,11 +176,22 @@ def spots(room: Room, shaped: Form) -> Iterator[tuple[Stand, float]]:
         return
     low = shaped.up if shaped.mount == "wall" else 0.0
     if shaped.mount != "flat":
+        worth = BACKED_WALL if _has_back(shaped) else FREE_STANDING_WALL
         for wall in DIRECTIONS:
             for rect in _along(inner, wall, shaped):
-                yield (rect, facing_from(wall), low), FREE_STANDING_WALL
+                yield (rect, facing_from(wall), low), worth
     if shaped.mount != "wall":
         yield from (((*spot, 0.0), 0.0) for spot in _out_in_the_room(inner, shaped, tuple(DIRECTIONS.values())))
+
+
+def _has_back(shaped: Form) -> bool:
+    """Return whether furniture stands with its back to a wall: closets, stoves, beds, nightstands."""
+    return shaped.mount == "floor" and (shaped.front >= USED_FROM_FRONT or shaped.shelves > 1)
+
+
+def _at_wall(rect: Rect, room: Room) -> bool:
+    """Return whether a floor rectangle touches one of a room's walls."""
+    return not interior(room).inset(AT_WALL).contains(rect)
 
 
 def _along(inner: Rect, wall: str, shaped: Form) -> Iterator[Rect]:

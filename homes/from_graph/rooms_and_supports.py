@@ -55,7 +55,7 @@ class Parts:
         }
         self._places = {"ON": targets["ON"], "INSIDE": targets["INSIDE"]}
         self.parent: dict[int, tuple[int, str]] = {}
-        for relation, word in (("INSIDE", "inside"), ("ON", "on"), ("INSIDE", "in anything")):
+        for relation, word in (("INSIDE", "inside"), ("ON", "on"), ("INSIDE", "within")):
             for child, places in sorted(targets[relation].items()):
                 self._settle(child, word, places)
         self.over = {child: places for child, places in targets["ON"].items() if child not in self.parent}
@@ -73,9 +73,14 @@ class Parts:
         if child in self.parent or not self._is_thing(child):
             return
         able = [place for place in places if self._bears(place, word) and child not in self._line(place)]
-        if able:
+        if able and not (word == "within" and self._stands(child)):
             place = min(able, key=lambda place: (self._volume(place), place))
-            self.parent[child] = (place, "inside" if word == "in anything" else word)
+            self.parent[child] = (place, self._within(child) if word == "within" else word)
+
+    def _within(self, child: int) -> str:
+        """Return the word for a place in furniture without a container: sinks are let in, pillows lie on top."""
+        shaped = form(self.nodes[child].class_name, self.knowledge)
+        return "inside" if shaped is None or shaped.mount == "sunk" else "on"
 
     def _is_thing(self, node: int) -> bool:
         known = self.nodes[node]
@@ -88,6 +93,14 @@ class Parts:
         if word == "inside" and not {"CONTAINERS", "CAN_OPEN"} & set(self.nodes[place].properties):
             return False
         return self._is_thing(place) and shaped is not None and not (word == "on" and shaped.mount == "flat")
+
+    def _stands(self, child: int) -> bool:
+        """Return whether a thing stands on the floor by its nature.
+
+        VirtualHome's boxes make a table INSIDE the couch whose corner it fills, and chairs INSIDE a counter.
+        """
+        shaped = form(self.nodes[child].class_name, self.knowledge)
+        return shaped is not None and shaped.mount in ("floor", "wall")
 
     def _line(self, node: int) -> list[int]:
         """Return a thing and all it stands on or in."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from hearth.interop.eai.action_sequencing import ARITY, Fault, Verdict, counted, judged
@@ -128,3 +128,19 @@ def _finding(kind: str, there: TaskWorld, model: str, program: tuple[str, ...]) 
     facts += [f"{row['relation_type']}({row['from_id']}, {row['to_id']})" for row in there.task.relations]
     goal = " then ".join([*there.task.actions, " and ".join(facts)] if facts else there.task.actions)
     return Finding(kind, there.task.id, there.task.title, model, goal, program)
+
+
+def page_of(findings: Iterable[Finding]) -> str:
+    """Return a page of findings in Markdown, by kind, each with its goal and the steps that prove it."""
+    kinds: dict[str, list[Finding]] = {}
+    for finding in findings:
+        kinds.setdefault(finding.kind, []).append(finding)
+    lines = ["# Wrong goals and wrong verdicts", ""]
+    lines += [f"- {kind}: {len(those)}" for kind, those in kinds.items()]
+    for kind, those in kinds.items():
+        lines += ["", f"## {kind[:1].upper()}{kind[1:]}"]
+        for finding in those:
+            by = f" ({finding.model})" if finding.model else ""
+            steps = [f"    {step}" for step in finding.program]
+            lines += ["", f"Task {finding.task}, {finding.title}{by}. Goal: `{finding.goal or 'nothing'}`", "", *steps]
+    return "\n".join(lines) + "\n"

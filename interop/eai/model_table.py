@@ -8,8 +8,9 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from hearth.interop.eai import action_sequencing, goal_interpretation
+from hearth.interop.eai import action_sequencing, goal_interpretation, subgoal_decomposition
 from hearth.interop.eai.goal_interpretation import Counts
+from hearth.interop.eai.operator_planning import OperatorPlanning
 from hearth.interop.eai.transition_modelling import Operators
 from hearth.interop.eai.wheel import ABILITIES, Wheel
 from hearth.kb.knowledge import Knowledge
@@ -34,7 +35,11 @@ def published() -> dict[str, dict[str, str]]:
 
 
 def table(
-    wheel: Wheel, knowledge: Knowledge, models: Collection[str] = (), abilities: Collection[str] = ()
+    wheel: Wheel,
+    knowledge: Knowledge,
+    models: Collection[str] = (),
+    abilities: Collection[str] = (),
+    planner: OperatorPlanning | None = None,
 ) -> Iterator[Row]:
     """Yield the figures of models, a model after the other.
 
@@ -43,6 +48,7 @@ def table(
         knowledge: of its homes.
         models: the models to judge, by their names or the wheel's; all if empty.
         abilities: names of `ABILITIES`; all if empty.
+        planner: plans with the models' operators; without it their success is left out.
 
     Raises:
         HearthError: MISSING_FILE: the wheel has no answers; UNKNOWN_ID: no such model.
@@ -57,8 +63,12 @@ def table(
     for model in wanted:
         if model not in there:
             raise HearthError.of(Code.UNKNOWN_ID, f"no model `{model[:60]}`", suggestion=f"one of {', '.join(there)}")
-        for ability in abilities or MEASURED:
+        for ability in abilities or ABILITIES:
             yield from _figures(wheel, knowledge, model, ability)
+            if ability == "transition_modeling" and planner is not None:
+                outcomes = list(filter(None, map(planner.planned, wheel.answers(ability, model))))
+                share = round(100 * sum(each.solved for each in outcomes) / max(len(outcomes), 1), 2)
+                yield _row(model, ability, "planner success", "transition_planner", share, None)
 
 
 def _figures(wheel: Wheel, knowledge: Knowledge, model: str, ability: str) -> Iterator[Row]:
@@ -75,16 +85,17 @@ def _figures(wheel: Wheel, knowledge: Knowledge, model: str, ability: str) -> It
         yield from _scores(model, ability, "goal_f1", theirs["all"], ours["all"])
         for kind in goal_interpretation.KINDS:
             yield _row(model, ability, f"{kind} F1", "", theirs[kind].scores()[2], ours[kind].scores()[2])
+    elif ability == "subgoal_decomposition":
+        found_subgoals = [subgoal_decomposition.judged(wheel, each, knowledge) for each in answers]
+        success, execution, own_success, own_runs = subgoal_decomposition.shares(found_subgoals)
+        yield _row(model, ability, "success", "subgoal_success", success, own_success)
+        yield _row(model, ability, "execution", "subgoal_execution", execution, own_runs)
     elif ability == "transition_modeling":
         operators, theirs_sum, ours_sum = Operators(wheel), Counts(), Counts()
         for each in answers:
             one, other = operators.judged(each)
             theirs_sum, ours_sum = theirs_sum.plus(one), ours_sum.plus(other)
         yield from _scores(model, ability, "transition_f1", theirs_sum, ours_sum)
-
-
-MEASURED = tuple(name for name in ABILITIES if name != "subgoal_decomposition")
-"""The abilities that the table has."""
 
 
 def _scores(model: str, ability: str, column: str, theirs: Counts, ours: Counts) -> Iterator[Row]:

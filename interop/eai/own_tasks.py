@@ -7,6 +7,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from hearth.datasets.export.pddl_domain import planning_domain
 from hearth.grounding.grounded_run import attempt
 from hearth.homes.library import load_graph
 from hearth.kb.action_grammar import check
@@ -35,7 +36,8 @@ ASKED: Mapping[str, str] = {
     "subgoal_decomposition": "Write the facts that hold one after the other on the way to the goal, as JSON: "
     '{"output": ["STATE(thing.id)" or "RELATION(thing.id, thing.id)", ...]}.',
     "action_sequencing": 'Write a plan that reaches the goal, as JSON: {"plan": ["[Action] <thing> (1.id)", ...]}.',
-    "transition_modeling": 'Write these actions as PDDL operators, as JSON: {"output": "(:action ...)"}.',
+    "transition_modeling": "Write these actions as PDDL operators with the predicates below, as JSON: "
+    '{"output": "(:action ...)"}.',
 }
 """The requests of the four abilities."""
 
@@ -64,8 +66,7 @@ def own_task(execution: Execution, home: str, seed: int = 0) -> dict[str, Any] |
         "things": names,
         "program": list(print_lines(execution.program.unbound())),
     }
-    actions = sorted({step.action for step in execution.program.steps})
-    prompts = {ability: _prompt(ability, task, actions) for ability in ASKED}
+    prompts = {ability: _prompt(ability, task, start.home.knowledge) for ability in ASKED}
     return task | {"prompts": prompts, "fingerprints": {name: fingerprint(text) for name, text in prompts.items()}}
 
 
@@ -112,13 +113,21 @@ def _things(start: World, program: Program) -> list[str]:
     return found
 
 
-def _prompt(ability: str, task: Mapping[str, Any], actions: list[str]) -> str:
+def _prompt(ability: str, task: Mapping[str, Any], knowledge: Knowledge) -> str:
     lines = [f"Task: {task['title']}", task["description"], "", ASKED[ability], "", "Things:", *task["things"]]
     if ability in ("subgoal_decomposition", "action_sequencing"):
         lines += ["", f"Goal: {task['goal']}"]
     if ability == "transition_modeling":
-        lines += ["", f"Actions: {', '.join(actions)}"]
+        actions = actions_of(task)
+        domain = planning_domain(knowledge, actions, loose=False)
+        lines += ["", f"Actions: {', '.join(actions)}", "", domain[: domain.index("(:action")].strip()]
     return "\n".join(lines)
+
+
+def actions_of(task: Mapping[str, Any]) -> list[str]:
+    """Return the actions that a task's operators are asked for: those of its program."""
+    program = parse_programs("Task\n\n\n\n" + "\n".join(task["program"]) + "\n").programs[0]
+    return sorted({step.action for step in program.steps})
 
 
 def fingerprint(text: str) -> str:

@@ -27,17 +27,25 @@ class Operator(NamedTuple):
 
 def operators_of(text: str) -> dict[str, Operator]:
     """Return the operators of an answer by name; those that are cut short are left out."""
+    parts = _operator_texts(text)
+    return {name: Operator(_block(part, ":precondition"), _block(part, ":effect")) for name, part in parts.items()}
+
+
+def parameters_of(text: str) -> dict[str, str]:
+    """Return the parameters of an answer's operators by name, as text."""
+    return {name: _block(part, ":parameters") for name, part in _operator_texts(text).items()}
+
+
+def _operator_texts(text: str) -> dict[str, str]:
+    """Return the text of each whole operator of an answer, without its name."""
     found = json_answer_of(text)
     body = str(found["output"]) if isinstance(found, dict) and "output" in found else unfenced(text)
     body = re.sub(r"\s+", " ", re.sub(r";.*$", "", body, flags=re.MULTILINE))
-    operators: dict[str, Operator] = {}
     places = list(re.finditer(r"\(:action\s+(\w+)", body))
-    for number, place in enumerate(places):
-        end = places[number + 1].start() if number + 1 < len(places) else len(body)
-        part = body[place.end() : end]
-        if all(word in part for word in (":parameters", ":precondition", ":effect")):
-            operators[place[1]] = Operator(_block(part, ":precondition"), _block(part, ":effect"))
-    return operators
+    ends = [place.start() for place in places[1:]] + [len(body)]
+    parts = {place[1]: body[place.end() : end] for place, end in zip(places, ends, strict=False)}
+    needed = (":parameters", ":precondition", ":effect")
+    return {name: part for name, part in parts.items() if all(word in part for word in needed)}
 
 
 def _block(text: str, word: str) -> str:

@@ -161,3 +161,28 @@ def test_things_may_be_in_or_on_each_other_a_thousand_deep(relation):
     edges += [Edge(each.id + 1, relation, each.id) for each in boxes[:-1]]
     laid = lay_out(EnvironmentGraph(nodes, tuple(edges)), "tower", default())
     assert {thing.line for thing in laid.layout.things} >= {box.id for box in boxes}
+
+
+COUCHES = {50: ("couch", "Furniture"), 51: ("coffee_table", "Furniture"), 52: ("pillow", "Props"),
+           53: ("kitchen_counter", "Furniture"), 54: ("sink", "Furniture"), 55: ("closet", "Furniture")}  # fmt: skip
+
+
+def test_what_a_couchs_box_holds_stands_before_it_or_lies_on_it():
+    """VirtualHome's boxes make the table before a corner couch INSIDE it, and the pillows too."""
+    graph = flat(without=(42,), extra=((51, "INSIDE", 50), (52, "INSIDE", 50), (54, "INSIDE", 53)))
+    nodes = (*graph.nodes, *(Node(i, name, kind) for i, (name, kind) in COUCHES.items()))
+    edges = (*graph.edges, *(Edge(i, "INSIDE", 2) for i in COUCHES))
+    found = lay_out(replace(graph, nodes=nodes, edges=edges), "flat", default())
+    boxes = {node.id: node.box for node in found.graph.nodes}
+    assert intrusion(boxes[51], boxes[50]) < 0.011
+    assert footprint(boxes[52]).overlap(footprint(boxes[50])) > 0 and boxes[52].center[1] > 0.4
+    assert footprint(boxes[53]).inset(-0.01).contains(footprint(boxes[54]))
+
+
+def test_closets_stand_at_walls_though_much_is_near_them():
+    near = [(n, "CLOSE", 55) for n in IN[2]] + [(55, "CLOSE", n) for n in IN[2]]
+    graph = flat(extra=((55, "INSIDE", 2), *near))
+    found = lay_out(replace(graph, nodes=(*graph.nodes, Node(55, "closet", "Furniture"))), "flat", default())
+    room = next(room for room in found.layout.plan.rooms if room.class_name == "kitchen")
+    box = next(node.box for node in found.graph.nodes if node.id == 55)
+    assert not interior(room).inset(0.1).contains(footprint(box))

@@ -8,9 +8,19 @@ import pytest
 from typer.testing import CliRunner
 
 from hearth.cli import app
+from hearth.datasets.export.pddl_domain import planning_domain
 from hearth.grounding.grounded_run import attempt
 from hearth.homes.library import load_graph
-from hearth.interop.eai.own_tasks import ASKED, fingerprint, interpretation_counts, own_task, plan_verdict, start_of
+from hearth.interop.eai.own_scores import operator_counts, subgoal_verdict
+from hearth.interop.eai.own_tasks import (
+    ASKED,
+    actions_of,
+    fingerprint,
+    interpretation_counts,
+    own_task,
+    plan_verdict,
+    start_of,
+)
 from hearth.schemas.syntax import parse_programs, print_lines
 from hearth.simulation.world.home import Home
 
@@ -59,7 +69,9 @@ def test_answers_in_one_command(task, ran, tmp_path):
     rows = [
         {"id": task["id"], "ability": "goal_interpretation", "answer": json.dumps({"goal": facts})},
         {"id": task["id"], "ability": "action_sequencing", "answer": json.dumps({"plan": plan})},
-        {"id": task["id"], "ability": "transition_modeling", "answer": ""},
+        {"id": task["id"], "ability": "subgoal_decomposition", "answer": json.dumps({"output": SUBGOALS})},
+        {"id": task["id"], "ability": "transition_modeling", "answer": json.dumps({"output": OPERATORS})},
+        {"id": task["id"], "ability": "cooking", "answer": ""},
     ]  # fmt: skip
     (tmp_path / "answers.jsonl").write_text("\n".join(map(json.dumps, rows)))
     result = CliRunner().invoke(
@@ -67,3 +79,33 @@ def test_answers_in_one_command(task, ran, tmp_path):
     )
     found = json.loads(result.output)
     assert (found["goal_f1"], found["plans_that_reach_the_goal"], found["not_scored"]) == (100.0, 100.0, 1)
+    assert (found["subgoals_that_run"], found["subgoals_that_reach_the_goal"]) == (100.0, 100.0)
+    assert found["operator_precision"] == 100.0 and 0 < found["operator_recall"] < 100
+
+
+SUBGOALS = ["CLOSE(character.367, fridge.137)", "OPEN(fridge.137)", "HOLDS_RH(character.367, milk.142)"]
+OPERATORS = "(:action Open :parameters (?a ?o) :precondition (close-to ?a ?o) :effect (and (is-open ?o)))"
+
+
+@pytest.mark.parametrize(
+    ("subgoals", "verdict"),
+    [
+        (SUBGOALS, (True, True)),
+        (SUBGOALS[:2], (True, False)),
+        (["HOLDS_RH(character.367, milk.142)"], (False, False)),  # the fridge is closed
+        (["OPEN(fridge.137) or ON(fridge.137)", SUBGOALS[2]], (True, True)),
+        (["OPEN(fridge.9999)"], (False, False)),
+        (["OPEN fridge"], (False, False)),
+        ([], (False, False)),
+    ],
+)
+def test_subgoals_are_brought_about_in_their_order(task, knowledge, subgoals, verdict):
+    assert subgoal_verdict(task, json.dumps({"output": subgoals}), knowledge) == verdict
+
+
+def test_operators_are_compared_with_the_engines_own(task, knowledge):
+    domain = planning_domain(knowledge, actions_of(task), loose=False)
+    right = operator_counts(task, domain[domain.index("(:action") :], knowledge)
+    assert right.right > 10 and (right.wrong, right.missed) == (0, 0)
+    assert operator_counts(task, "(((", knowledge) == (0, 0, right.right)
+    assert "(is-open ?x - object)" in task["prompts"]["transition_modeling"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections.abc
 import copy
 import importlib
 import json
@@ -34,6 +35,7 @@ def published():
 def test_the_published_client_runs_the_demo(tmp_path, monkeypatch):
     module = published()
     monkeypatch.setattr(np, "fromstring", np.frombuffer)  # it decodes by the former, which NumPy 2.3 removed
+    monkeypatch.setattr(collections, "Iterable", collections.abc.Iterable, raising=False)  # gone since Python 3.10
     command = [sys.executable, str(ROOT / "cli.py"), "serve", "--virtualhome", "--port", "0", "--json", "--out",
                str(tmp_path / "out")]  # fmt: skip
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=ROOT) as process:
