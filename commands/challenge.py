@@ -98,6 +98,7 @@ def run_tasks(
     engine: str = "local",
     scheduler: str = "",
     llm: list[str] | None = None,
+    images: bool = False,
     cache: Path | None = None,
     prices: str = "",
     budget: float | None = None,
@@ -134,9 +135,10 @@ def run_tasks(
     suite = read(file)
     if proposals not in ("", "exact"):
         helper = f"{helper}_{proposals}"
-    asking, means = read_settings(llm or (), cache or kept_next_to(out, (main, helper)), prices, budget)
+    given = [*(llm or ()), *(["images=yes"] if images else [])]
+    asking, means = read_settings(given, cache or kept_next_to(out, (main, helper)), prices, budget)
     lineup = Lineup(main, helper, goal, seconds, asking, means)
-    need_models(lineup.names, engine, given=bool(llm or cache or prices or budget is not None))
+    need_models(lineup.names, engine, given=bool(given or cache or prices or budget is not None))
     with (
         bar("episodes", lambda: spending(lineup.names, asking, means)) as seen,
         spread_over(engine, workers, scheduler) as over,

@@ -27,6 +27,9 @@ def asked_model(
     from hearth.llm.language_settings import kept_next_to, read_settings
 
     asking, means = read_settings(llm or (), cache or kept_next_to(out, (name,)), prices, budget)
+    if asking.images:
+        message = "planners and judges read texts, and are shown no pictures"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out images")
     return endpoint_of(name, replace(asking, constrained=asking.constrained or constrained), means)
 
 

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import language_judge, output
 
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
-    help="Language models: probe a server that speaks the chat protocol, or serve a small model.",
+    help="Language models: probe a server that speaks the chat protocol, judge with one, or serve a small model.",
 )
 
 
@@ -59,3 +59,6 @@ def serve(model: str = "", *, port: int = 8080, threads: int = 0, at_once: int =
     output.say(lines, {"model": name, "url": url, "name": f"llm:{name}@{url}"}, as_json)
     threading.Event().wait()
     del server
+
+
+app.command("judge")(language_judge.judge)

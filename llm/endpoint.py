@@ -14,8 +14,9 @@ from urllib.parse import urlsplit
 from hearth.llm.addresses import checked_url, is_here, key_for, read_name, without_key
 from hearth.llm.answer_cache import AnswerCache, Spent
 from hearth.llm.language_settings import Asking, Means
+from hearth.llm.picture_messages import PICTURE_TOKENS, pictures_in, without_pictures
 from hearth.llm.purse import Purse
-from hearth.llm.replies import Reply, read_reply
+from hearth.llm.replies import CHARACTERS, Reply, read_reply
 from hearth.llm.requests_with_retries import Failed, post, with_retries
 from hearth.llm.timed_connections import client, pause
 from hearth.schemas.diagnostics import HearthError
@@ -119,7 +120,7 @@ class Endpoint:
         if self.means.offline:
             message = f"the cache has no reply of `{self.model}` to this prompt"
             raise HearthError.of(Code.NO_ANSWER, message, suggestion="ask the server: leave out offline")
-        size = len(_dumped(messages))
+        size = _size(messages)
         with self._room, self.purse.holding(size, self.asking.most_tokens):
             reply = self._asked(body, size)
             self.purse.pay(reply)
@@ -219,6 +220,11 @@ class Endpoint:
         if not isinstance(text, str):
             raise Failed("not text", f"it returned {type(text).__name__}, not text", again=False)
         return {"choices": [{"message": {"content": text}}]}
+
+
+def _size(messages: Sequence[Message]) -> int:
+    """Return the characters of a prompt, a picture as many as its tokens have: its own say nothing of its price."""
+    return len(_dumped(without_pictures(messages))) + CHARACTERS * PICTURE_TOKENS * pictures_in(messages)
 
 
 def _dumped(value: Any) -> bytes:

@@ -15,7 +15,7 @@ from hearth.llm.constraints import FORMS, SCHEMA, keeps, schema_fields
 from hearth.llm.endpoint import Endpoint
 from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import PromptPage, page
-from hearth.llm.replies import Reply
+from hearth.llm.replies import Reply, sums
 from hearth.llm.timed_connections import asking
 from hearth.models.interface import Request, Steps
 from hearth.models.text.retrieval import Similarity, text_of
@@ -63,12 +63,7 @@ class Planned:
             "warnings": dict(self.warnings),
             "unanswered": dict(self.unanswered),
             "disobeyed": self.disobeyed,
-            "cut": sum(reply.cut for reply in self.replies),
-            "tokens_in": sum(reply.tokens_in for reply in self.replies),
-            "tokens_out": sum(reply.tokens_out for reply in self.replies),
-            "seconds": round(sum(reply.seconds for reply in self.replies), 3),
-            "tries": sum(reply.tries for reply in self.replies),
-            "kept": sum(reply.kept for reply in self.replies),
+            **sums(self.replies),
         }
 
 

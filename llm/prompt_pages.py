@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -11,8 +12,21 @@ from typing import Any
 
 from hearth.schemas.yaml_limits import packaged
 
-ROLES = ("actor", "helper", "planner")
+ROLES = ("actor", "helper", "judge", "planner")
 """The roles; each has a page in `llm/prompts/`."""
+
+
+MARKUP = re.compile(r"<\|")
+"""The beginning of the marks by which chats are taken apart."""
+
+
+PLACE = re.compile(r"\{(\w+)\}")
+"""The place of a fact in a text."""
+
+
+def unmarked(text: str) -> str:
+    """Return a text in which nothing ends a message: names and descriptions are a stranger's."""
+    return MARKUP.sub("< |", text)
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +49,7 @@ class PromptPage:
     def said(self, name: str, **facts: object) -> str:
         """Return one of its texts with facts in place of `{name}`; braces in facts stay as they are."""
         text = str(self.words[name]).strip()
-        for key, value in facts.items():
-            text = text.replace(f"{{{key}}}", str(value))
-        return text
+        return PLACE.sub(lambda place: str(facts.get(place[1], place[0])), text)
 
 
 @cache

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +35,18 @@ class Reply:
     seconds: float = 0.0
     tries: int = 1
     kept: bool = False
+
+
+def sums(replies: Sequence[Reply]) -> dict[str, Any]:
+    """Return the sums of replies, as results have them."""
+    return {
+        "cut": sum(reply.cut for reply in replies),
+        "tokens_in": sum(reply.tokens_in for reply in replies),
+        "tokens_out": sum(reply.tokens_out for reply in replies),
+        "seconds": round(sum(reply.seconds for reply in replies), 3),
+        "tries": sum(reply.tries for reply in replies),
+        "kept": sum(reply.kept for reply in replies),
+    }
 
 
 def read_reply(given: Any, asked: int) -> Reply | None:
