@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
@@ -18,6 +18,7 @@ from hearth.llm.prompt_pages import PromptPage, page
 from hearth.llm.replies import Reply, sums
 from hearth.llm.timed_connections import asking
 from hearth.models.interface import Request, Steps
+from hearth.models.text.mixed_similarity import MixedSimilarity
 from hearth.models.text.retrieval import Similarity, text_of
 from hearth.models.text_examples import Example
 from hearth.pipelines.readers.plans_in_words import parse_steps
@@ -75,6 +76,7 @@ class LanguagePlanner:
         knowledge: the action grammar.
         examples: of training, from which those before a request are chosen by the words of their texts.
         shots: how many.
+        similarity: makes the similarity to the examples' texts; usually that of words.
 
     Attributes:
         planned: the counts of all answers.
@@ -84,14 +86,19 @@ class LanguagePlanner:
     """
 
     def __init__(
-        self, endpoint: Endpoint, knowledge: Knowledge, examples: Sequence[Example] = (), shots: int = 0
+        self,
+        endpoint: Endpoint,
+        knowledge: Knowledge,
+        examples: Sequence[Example] = (),
+        shots: int = 0,
+        similarity: Callable[[Sequence[str]], Similarity | MixedSimilarity] = Similarity,
     ) -> None:
         self._endpoint, self._knowledge, self._page = endpoint, knowledge, page("planner")
         first = {text_of(each.title, each.description): each for each in reversed(examples)}
         self._examples = list(first.values())[::-1]
         self._shots = min(shots, len(self._examples))
         texts = [text_of(each.title, each.description) for each in self._examples]
-        self._similarity = Similarity(texts) if self._shots else None
+        self._similarity = similarity(texts) if self._shots else None
         self._form = form_of(endpoint) if endpoint.asking.constrained else ""
         self._grammar: LineGrammar | None = step_grammar(knowledge) if self._form else None
         self._fields = self._constraint() if self._form else {}

@@ -64,11 +64,11 @@ def read_reply(given: Any, asked: int) -> Reply | None:
     if text is None:
         return None
     usage = given.get("usage")
-    tokens_in, tokens_out = (_count(usage, name) for name in ("prompt_tokens", "completion_tokens"))
-    counted = tokens_in is not None and tokens_out is not None
-    if tokens_in is None or tokens_out is None:
-        tokens_in, tokens_out = -(-asked // CHARACTERS), -(-len(text) // CHARACTERS)
-    return Reply(text, tokens_in, tokens_out, counted, cut=choice.get("finish_reason") == "length")
+    asks = (("prompt_tokens", asked), ("completion_tokens", len(text)))
+    (one, tokens_in), (other, tokens_out) = (tokens_of(usage, name, size) for name, size in asks)
+    if not (one and other):  # of a server that counts one kind alone, neither is believed
+        (_, tokens_in), (_, tokens_out) = (tokens_of(None, name, size) for name, size in asks)
+    return Reply(text, tokens_in, tokens_out, one and other, cut=choice.get("finish_reason") == "length")
 
 
 def _first(choices: Any) -> Mapping[str, Any] | None:
@@ -94,6 +94,12 @@ def _text(message: Mapping[str, Any]) -> str | None:
 def well_formed(text: str) -> str:
     """Return a text that can be written as UTF-8: halves of characters are replaced by `?`."""
     return text.encode("utf-8", "replace").decode()
+
+
+def tokens_of(usage: Any, name: str, characters: int) -> tuple[bool, int]:
+    """Return whether a server counted, and its tokens of a kind, or their estimate from characters."""
+    found = _count(usage, name)
+    return (True, found) if found is not None else (False, -(-characters // CHARACTERS))
 
 
 def _count(usage: Any, name: str) -> int | None:

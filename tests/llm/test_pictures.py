@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from base64 import b64decode
+from dataclasses import replace
 
 import pytest
 from lying_server import reply, serving
@@ -11,7 +12,7 @@ from typer.testing import CliRunner
 
 from hearth import cli
 from hearth.challenges.episode_agents import Lineup
-from hearth.challenges.result_files import read
+from hearth.challenges.result_files import first_line, line, read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite, write
 from hearth.challenges.verification import verify
@@ -94,11 +95,10 @@ def test_the_same_episode_has_the_same_pictures(results):
 def test_the_episode_verifies_and_a_left_out_picture_is_found(results, tmp_path):
     out = results[0]
     assert verify(read(out), "x", default) == []
-    head, *rest = out.read_bytes().splitlines(keepends=True)
-    told = json.loads(head)
-    assert told["language"]["0"].pop("images") is True
+    facts = {name: value for name, value in results[1].header.language["0"].items() if name != "images"}
+    header = replace(results[1].header, language={"0": facts})
     changed = tmp_path / "changed.jsonl"
-    changed.write_bytes(b"".join([json.dumps(told).encode() + b"\n", *rest]))
+    changed.write_bytes(first_line(header) + b"".join(line(header, each) for each in results[1].records))
     (fault,) = verify(read(changed), "x", default)
     assert "agent 0 is another than was recorded" in fault.message
 
