@@ -10,6 +10,7 @@ from hashlib import blake2b
 from importlib.resources import files
 from typing import Any
 
+from hearth.envs.text_protocol_settings import PROTOCOLS, protocol
 from hearth.schemas.yaml_limits import packaged
 
 ROLES = ("actor", "helper", "judge", "planner")
@@ -37,11 +38,13 @@ class PromptPage:
         name: its identifier.
         fingerprint: digest of its file.
         words: its texts and limits, by name.
+        text: of its file.
     """
 
     name: str
     fingerprint: str
     words: Mapping[str, Any]
+    text: str = ""
 
     def __getitem__(self, name: str) -> Any:
         return self.words[name]
@@ -55,7 +58,15 @@ class PromptPage:
 @cache
 def page(role: str) -> PromptPage:
     """Return the page of a role; read once."""
-    file = f"prompts/{role}.yaml"
-    words = packaged("hearth.llm", file)
-    digest = blake2b((files("hearth.llm") / file).read_bytes(), digest_size=8).hexdigest()
-    return PromptPage(words["name"], digest, words)
+    return _read("hearth.llm", f"prompts/{role}.yaml")
+
+
+def every_page() -> dict[str, PromptPage]:
+    """Return the pages of all roles by their names, and the text protocol of agents as `protocol`."""
+    return {**{role: page(role) for role in ROLES}, "protocol": _read("hearth.envs", PROTOCOLS[protocol().name])}
+
+
+def _read(package: str, file: str) -> PromptPage:
+    words, data = packaged(package, file), (files(package) / file).read_bytes()
+    digest = blake2b(data, digest_size=8).hexdigest()
+    return PromptPage(words["name"], digest, words, data.decode())
