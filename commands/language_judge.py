@@ -1,4 +1,4 @@
-"""`llm judge`: the verdicts of a language model on what was done, beside the engine's."""
+"""`llm judge`: the verdicts of a language model on episodes and programs, compared with the engine's."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def judge(
     budget: float | None = None,
     as_json: bool = False,
 ) -> None:
-    """Let a language model judge what was done, and print how far it agrees with the engine.
+    """Let a language model judge episodes or programs, and print how far it agrees with the engine.
 
     FILE has episodes, of `challenge run`, or predicted programs of a dataset (--dataset). The engine's verdict is
     whether the goal was reached; the model does not see it. `informed` is the share of right cases that it accepts less

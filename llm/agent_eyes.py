@@ -20,7 +20,7 @@ _DRAWING = threading.Lock()
 
 
 class Eyes:
-    """Pictures of what an agent sees, in one episode.
+    """Pictures by an agent's eyes, in one episode.
 
     Args:
         start: the view before the first tick, of a home with geometry.

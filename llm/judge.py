@@ -35,7 +35,7 @@ MOST_KEPT = 2_000
 
 @dataclass(frozen=True)
 class Case:
-    """A task and what was done for it.
+    """A task and the steps that were done for it.
 
     Attributes:
         id: of the case.

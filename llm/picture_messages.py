@@ -1,4 +1,4 @@
-"""Pictures in messages, as the chat protocol has them, and what they count where a server does not say."""
+"""Pictures in messages, as the chat protocol has them, and their tokens where a server does not count them."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def predict_part(
         repaired: bind and repair each program in its environment, and leave out the steps that can't run there.
         originals: leave out executions of augmented programs.
         limit: the first executions only.
-        embed: `llm:MODEL@URL` or a folder with weights, whose vectors choose examples beside words; validation examples
+        embed: `llm:MODEL@URL` or a folder with weights, whose vectors choose examples, as words do; validation examples
             choose the weight of each.
         seen: reports progress.
 
