@@ -98,6 +98,11 @@ def spending(names: Sequence[str], asking: Asking, means: Means) -> str:
     return ", ".join(endpoint_of(name, asking, means).spending() for name in names if is_model(name))
 
 
+def requests_sent(names: Sequence[str], asking: Asking, means: Means) -> int:
+    """Return how many requests this process has made for the language models of a run; kept replies need none."""
+    return sum(endpoint_of(name, asking, means).sent for name in names if is_model(name))
+
+
 def transcripts(players: Sequence[Any]) -> dict[str, Any] | None:
     """Return the answers of the language models among the guarded agents of an episode; None where there are none."""
     agents = [getattr(player.agent, "agent", None) for player in players]
