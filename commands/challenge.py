@@ -124,7 +124,7 @@ def run_tasks(
       hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
     """
     from hearth.challenges.episode_agents import Lineup
-    from hearth.challenges.language_agents import need_models, requests_sent, spending
+    from hearth.challenges.language_agents import need_models, spending
     from hearth.challenges.parallel_episodes import spread_over
     from hearth.challenges.suite_runs import run
     from hearth.challenges.task_files import read
@@ -145,9 +145,7 @@ def run_tasks(
     ):
         found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
     challenge_output.print_results(found, as_json)
-    if means.cache is not None:
-        sent = requests_sent(lineup.names, asking, means)
-        output.note(f"{output.counted(sent, 'request')} sent; all other replies were kept in {means.cache}")
+    challenge_output.note_requests(lineup)
     output.status(len(found.unfinished), strict=True)
 
 

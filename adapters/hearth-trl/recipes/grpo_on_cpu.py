@@ -10,6 +10,7 @@ rollouts in starts that the training does not have. With a model of yours, leave
 import argparse
 import json
 import logging
+import re
 import tempfile
 import warnings
 from random import Random
@@ -38,6 +39,9 @@ TURNS = 6
 TRAINED, ASKED = 100, 500
 """The first seeds of the starts that are trained on, and of those that the figures are of."""
 
+ANSWERED = re.compile(r"<\|im_start\|>assistant\n(.*?<\|im_end\|>)", re.DOTALL)
+"""What an assistant wrote, with the mark of its end."""
+
 Tokens = PreTrainedTokenizerFast
 
 
@@ -58,13 +62,20 @@ def dialogue(seed: int, chance: Random) -> list[dict]:
     return messages
 
 
-def tokenizer(texts: list[str]) -> Tokens:
-    """Return a tokenizer of these texts."""
+def tokenizer(dialogues: list[list[dict]]) -> Tokens:
+    """Return a tokenizer of dialogues, in which a line that comes often is one token: so a call is a few."""
+    found = Tokens(tokenizer_object=Tokenizer(models.BPE()), eos_token="<|im_end|>", pad_token="<|endoftext|>")
+    found.chat_template = qwen3_chat_template
+    texts = [found.apply_chat_template(each, tools=tools(), tokenize=False) for each in dialogues]
     made = Tokenizer(models.BPE())
-    made.pre_tokenizer, made.decoder = pre_tokenizers.ByteLevel(add_prefix_space=False), decoders.ByteLevel()
+    lines = pre_tokenizers.Split("\n", "merged_with_previous")
+    made.pre_tokenizer = pre_tokenizers.Sequence(
+        [lines, pre_tokenizers.ByteLevel(add_prefix_space=False, use_regex=False)]
+    )
+    made.decoder = decoders.ByteLevel()
     marks = ["<|endoftext|>", "<|im_start|>", "<|im_end|>"]
     alphabet = pre_tokenizers.ByteLevel.alphabet()
-    trainer = trainers.BpeTrainer(vocab_size=900, special_tokens=marks, initial_alphabet=alphabet, show_progress=False)
+    trainer = trainers.BpeTrainer(vocab_size=3000, special_tokens=marks, initial_alphabet=alphabet, show_progress=False)
     made.train_from_iterator(texts, trainer)
     found = Tokens(tokenizer_object=made, eos_token="<|im_end|>", pad_token="<|endoftext|>")
     found.chat_template = qwen3_chat_template
@@ -80,10 +91,14 @@ def model_of(words: Tokens) -> Qwen3ForCausalLM:
     return Qwen3ForCausalLM(config)
 
 
+def tools() -> list[dict]:
+    """Return the tool of the environment as models see it."""
+    return [get_json_schema(HearthEnv().act)]
+
+
 def warmed(model: Qwen3ForCausalLM, words: Tokens, dialogues: list[list[dict]], steps: int) -> None:
     """Teach a model the form of a call: it learns the assistant's tokens of the dialogues."""
-    tools = [get_json_schema(HearthEnv().act)]
-    examples = [labelled(words, messages, tools) for messages in dialogues]
+    examples = [labelled(words, messages) for messages in dialogues]
     made = torch.optim.AdamW(model.parameters(), 3e-3)
     for step in range(steps):
         loss = torch.stack([
@@ -95,19 +110,16 @@ def warmed(model: Qwen3ForCausalLM, words: Tokens, dialogues: list[list[dict]], 
         made.zero_grad()
 
 
-def labelled(words: Tokens, messages: list[dict], tools: list[dict]) -> tuple[torch.Tensor, torch.Tensor]:
+def labelled(words: Tokens, messages: list[dict]) -> tuple[torch.Tensor, torch.Tensor]:
     """Return a dialogue's tokens, and as labels those of the assistant."""
-    numbers: list[int] = []
-    labels: list[int] = []
-    for end in range(1, len(messages) + 1):
-        asks = end < len(messages) and messages[end]["role"] == "assistant"
-        text = words.apply_chat_template(messages[:end], tools=tools, tokenize=False, add_generation_prompt=asks)
-        whole = words(text).input_ids
-        learned = messages[end - 1]["role"] == "assistant"
-        new = whole[len(numbers) :]
-        labels += new if learned else [-100] * len(new)
-        numbers = whole
-    return torch.tensor([numbers]), torch.tensor([labels])
+    text = words.apply_chat_template(messages, tools=tools(), tokenize=False)
+    found = words(text, return_offsets_mapping=True)
+    spans = [each.span(1) for each in ANSWERED.finditer(text)]
+    labels = [
+        number if any(first <= start and end <= last for first, last in spans) else -100
+        for number, (start, end) in zip(found.input_ids, found.offset_mapping, strict=True)
+    ]
+    return torch.tensor([found.input_ids]), torch.tensor([labels])
 
 
 def trainer_of(model: Qwen3ForCausalLM, words: Tokens, steps: int, group: int, seed: int, folder: str) -> GRPOTrainer:
@@ -137,7 +149,7 @@ def main() -> None:
     set_seed(given.seed)
     chance = Random(given.seed)
     dialogues = [dialogue(TRAINED + n, chance) for n in range(60)]
-    words = tokenizer([message["content"] for messages in dialogues for message in messages])
+    words = tokenizer(dialogues)
     model = model_of(words)
     warmed(model, words, dialogues, given.warm)
     with tempfile.TemporaryDirectory() as folder:
