@@ -40,7 +40,7 @@ TRAINED, ASKED = 100, 500
 """The first seeds of the starts that are trained on, and of those that the figures are of."""
 
 ANSWERED = re.compile(r"<\|im_start\|>assistant\n(.*?<\|im_end\|>)", re.DOTALL)
-"""What an assistant wrote, with the mark of its end."""
+"""The words of an assistant, with the mark of their end."""
 
 Tokens = PreTrainedTokenizerFast
 
