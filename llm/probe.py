@@ -104,7 +104,7 @@ def need_sight(endpoint: Endpoint) -> None:
         known = {**known, IMAGES: _sees(_impatient(endpoint))}
         _keep(endpoint, known)
     if known[IMAGES] != OBEYED:
-        how = "refuses pictures" if known[IMAGES] == REFUSED else "does not tell a red picture from a blue one"
+        how = "refuses pictures" if known[IMAGES] == REFUSED else "does not distinguish a red picture from a blue one"
         message = f"`{endpoint.model}` at {endpoint.where} {how}"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out images, or take a model that sees")
 
@@ -166,7 +166,7 @@ def _reply(endpoint: Endpoint, question: Any, **more: Any) -> Reply:
 
 
 def _sees(endpoint: Endpoint) -> str:
-    """Return whether the model tells two colours apart: a server that drops pictures gives the same answer twice."""
+    """Return whether the model distinguishes two colours: a server that drops pictures gives the same answer twice."""
 
     def colours() -> list[str]:
         return [_reply(endpoint, pictured(COLOUR, url)).text.lower() for url in SQUARES.values()]

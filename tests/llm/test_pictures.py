@@ -114,8 +114,8 @@ def test_without_pictures_nothing_of_a_file_changes(tasks, tmp_path):
     ("answer", "finding", "said"),
     [
         (seeing, "obeyed", ""),
-        ("Red, I guess.", "ignored", "does not tell a red picture from a blue one"),
-        ("red or blue", "ignored", "does not tell"),
+        ("Red, I guess.", "ignored", "does not distinguish a red picture from a blue one"),
+        ("red or blue", "ignored", "does not distinguish"),
         (lambda body: 400 if pictures(body) else "Hello", "refused", "refuses pictures"),
     ],
 )
