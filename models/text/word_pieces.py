@@ -19,7 +19,7 @@ def pieces_of(file: Path) -> dict[str, int]:
 
 
 def numbered(text: str, pieces: Mapping[str, int], most: int) -> list[int]:
-    """Return the numbers of a text's pieces between the two marks; at most so many."""
+    """Return the numbers of a text's pieces between the two marks, `most` at most."""
     found = [pieces[piece] for word in _words(text) for piece in _taken_apart(word, pieces)]
     return [pieces[FIRST], *found[: most - 2], pieces[LAST]]
 
