@@ -16,7 +16,17 @@ from typing import Any
 
 from hearth.challenges.challenge_definition import challenge
 from hearth.challenges.episodes import Known, Record, replayed, start_of
-from hearth.challenges.metrics import CONFIDENT, Mean, Outcomes, mean, of_tasks, paired, share_interval, summary
+from hearth.challenges.metrics import (
+    CONFIDENT,
+    Mean,
+    Outcomes,
+    difference_interval,
+    mean,
+    of_tasks,
+    paired,
+    share_interval,
+    summary,
+)
 from hearth.challenges.result_files import Results
 from hearth.challenges.tasks import Task
 from hearth.challenges.verification import read_whole, verify
@@ -210,12 +220,7 @@ def _of_shares(first: Mapping[str, float], second: Mapping[str, float]) -> tuple
     """Return the interval of the difference of two shares of successful tasks."""
     common = [task for task in first if task in second]
     shares = [math.fsum(each[task] for task in common) / len(common) for each in (first, second)]
-    (low, high), (other_low, other_high) = (share_interval(share, len(common)) for share in shares)
-    one, other = shares
-    return (
-        one - other - math.hypot(one - low, other_high - other),
-        one - other + math.hypot(high - one, other - other_low),
-    )
+    return difference_interval(shares[0], len(common), shares[1], len(common))
 
 
 def _of_pairs(value: Mean, number: int) -> tuple[float | None, float | None]:

@@ -9,9 +9,11 @@ from hearth.agents.protocol import Agent
 from hearth.envs.text_protocol_settings import protocol
 from hearth.llm.actor import Actor
 from hearth.llm.addresses import is_model, read_name
+from hearth.llm.agent_eyes import Eyes
 from hearth.llm.endpoint import endpoint_of
 from hearth.llm.language_settings import BOUNDS, Asking, Means
 from hearth.llm.legal_commands import form_of
+from hearth.llm.probe import need_sight
 from hearth.llm.prompt_pages import page
 from hearth.llm.turns import is_transcript
 from hearth.schemas.diagnostics import HearthError
@@ -57,7 +59,7 @@ def need_models(names: Sequence[str], engine: str, *, given: bool) -> None:
     """
     some = any(map(is_model, names))
     if given and not some:
-        message = "--llm, --cache, --prices and --budget are about language models, and no agent is one"
+        message = "--llm, --images, --cache, --prices and --budget are about language models, and no agent is one"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--main llm:MODEL@URL")
     if some and engine != "local":
         message = "language models are asked from one machine, which has the cache and the budget"
@@ -86,12 +88,19 @@ def player_of(name: str, asking: Asking, means: Means, instruction: str, message
     """Return a new agent that a language model decides for."""
     endpoint = endpoint_of(name, asking, means)
     form = form_of(endpoint) if asking.constrained else ""
-    return Actor(endpoint.ask, asking, instruction, messages, number, form)
+    if asking.images:
+        need_sight(endpoint)
+    return Actor(endpoint.ask, asking, instruction, messages, number, form, Eyes if asking.images else None)
 
 
 def spending(names: Sequence[str], asking: Asking, means: Means) -> str:
     """Return the tokens and the cost of a run's language models until now, for a progress line; "" for none."""
     return ", ".join(endpoint_of(name, asking, means).spending() for name in names if is_model(name))
+
+
+def requests_sent(names: Sequence[str], asking: Asking, means: Means) -> int:
+    """Return how many requests this process has made for the language models of a run; kept replies need none."""
+    return sum(endpoint_of(name, asking, means).sent for name in names if is_model(name))
 
 
 def transcripts(players: Sequence[Any]) -> dict[str, Any] | None:

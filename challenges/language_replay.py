@@ -22,7 +22,7 @@ from hearth.llm.turns import turns_of
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 
-CHECKED = ("turns", "asked")
+CHECKED = ("turns", "asked", "pictures")
 """The parts of a transcript that reading the answers again gives; tokens and seconds are the server's word."""
 
 Fault = str
@@ -58,7 +58,8 @@ def _replayed(
     goals = goals_of(which, task, record, start.home)
     answers = RecordedAnswers(turns_of(transcript))
     instruction = "" if number else task.instruction
-    asking = Asking(memory=int(facts["memory"]), most_turns=int(facts["most_turns"]))
+    images = facts.get("images") is True
+    asking = Asking(memory=int(facts["memory"]), most_turns=int(facts["most_turns"]), images=images)
     actor = Actor(answers, asking, instruction, which.messages, number)
     guarded = Guarded(actor, number, which.allowed(known), WAITING, which.messages)
     playing = Playing(
@@ -105,7 +106,7 @@ def _rest(
         return f"agent {number} has {answers.left} answers more than it gave"
     again = actor.transcript.as_json()
     for name in CHECKED:
-        if again[name] != transcript[name]:
+        if again.get(name) != transcript.get(name):
             what = "a fault of an answer" if name == "turns" else "a prompt"
             return f"{what} of agent {number} is another than was recorded"
     return ""

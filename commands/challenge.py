@@ -98,6 +98,7 @@ def run_tasks(
     engine: str = "local",
     scheduler: str = "",
     llm: list[str] | None = None,
+    images: bool = False,
     cache: Path | None = None,
     prices: str = "",
     budget: float | None = None,
@@ -113,14 +114,12 @@ def run_tasks(
 
     \b
     Examples:
-      hearth challenge run test-1.json --main mine.py:Agent --out mine.jsonl
       hearth challenge run test-1.json --main "node agent.js" --out node.jsonl
       hearth challenge run test-1.json --helper hp --goal true --seeds 5 --out hp.jsonl
-      hearth challenge run test-1.json --helper mine.py:Helper --out mine.jsonl --json
+      hearth challenge run test-1.json --main mine.py:Agent --helper mine.py:Helper --out mine.jsonl --json
       hearth challenge run tasks.json --main llm:MODEL@URL --prices 0.15,0.60 --budget 2 --out model.jsonl -j 16
       hearth challenge run owah.json --helper llm:smollm2 --llm memory=4 --out helped.jsonl
-      hearth challenge run owah.json --helper nopa --proposals gpn --out nopa.jsonl
-      hearth challenge run owah.json --helper nopa --engine dask --scheduler tcp://10.0.0.1:8786 --out nopa.jsonl
+      hearth challenge run owah.json --helper nopa --proposals gpn --engine dask --scheduler tcp://a:8786 --out n.jsonl
     """
     from hearth.challenges.episode_agents import Lineup
     from hearth.challenges.language_agents import need_models, spending
@@ -132,17 +131,18 @@ def run_tasks(
     from hearth.llm.language_settings import kept_next_to, read_settings
 
     suite = read(file)
-    if proposals not in ("", "exact"):
-        helper = f"{helper}_{proposals}"
-    asking, means = read_settings(llm or (), cache or kept_next_to(out, (main, helper)), prices, budget)
+    helper = f"{helper}_{proposals}" if proposals not in ("", "exact") else helper
+    given = [*(llm or ()), *(["images=yes"] if images else [])]
+    asking, means = read_settings(given, cache or kept_next_to(out, (main, helper)), prices, budget)
     lineup = Lineup(main, helper, goal, seconds, asking, means)
-    need_models(lineup.names, engine, given=bool(llm or cache or prices or budget is not None))
+    need_models(lineup.names, engine, given=bool(given or cache or prices or budget is not None))
     with (
         bar("episodes", lambda: spending(lineup.names, asking, means)) as seen,
         spread_over(engine, workers, scheduler) as over,
     ):
         found = run(suite, lineup, seeds, out, default, workers, seen, over=over)
     challenge_output.print_results(found, as_json)
+    challenge_output.note_requests(lineup)
     output.status(len(found.unfinished), strict=True)
 
 

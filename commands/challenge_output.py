@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from hearth.commands import output
 
 if TYPE_CHECKING:
+    from hearth.challenges.episode_agents import Lineup
     from hearth.challenges.result_files import Results
 
 ALONE = ("success", "hazards", "irreversible", "wasted", "length", "reward")
@@ -97,3 +98,12 @@ def _print_unfinished(reasons: list[dict[str, Any]]) -> None:
         output.line(f"{count} not finished, without a score: {each['code']}: {each['message']}")
     if len(reasons) > MOST_PRINTED:
         output.line(f"and {len(reasons) - MOST_PRINTED:,} other reasons (--json has all)")
+
+
+def note_requests(lineup: Lineup) -> None:
+    """Print how many requests a run has sent to its language models, and where the other replies come from."""
+    from hearth.challenges.language_agents import requests_sent
+
+    if lineup.means.cache is not None:
+        sent = requests_sent(lineup.names, lineup.asking, lineup.means)
+        output.note(f"{output.counted(sent, 'request')} sent; all other replies were kept in {lineup.means.cache}")

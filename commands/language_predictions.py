@@ -27,6 +27,9 @@ def asked_model(
     from hearth.llm.language_settings import kept_next_to, read_settings
 
     asking, means = read_settings(llm or (), cache or kept_next_to(out, (name,)), prices, budget)
+    if asking.images:
+        message = "planners and judges read texts, and are shown no pictures"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out images")
     return endpoint_of(name, replace(asking, constrained=asking.constrained or constrained), means)
 
 
@@ -40,6 +43,7 @@ def predict(
     repair: bool,
     originals: bool,
     limit: int | None,
+    embed: str,
     as_json: bool,
 ) -> None:
     """Write predictions, and print the counts; the status is 1 if texts have no answer."""
@@ -49,7 +53,7 @@ def predict(
     with bar("executions", model.spending) as seen:
         facts = predict_part(
             model, dataset, out, split, part,
-            shots=shots, repaired=repair, originals=originals, limit=limit, seen=seen,
+            shots=shots, repaired=repair, originals=originals, limit=limit, embed=embed, seen=seen,
         )  # fmt: skip
     if as_json:
         output.emit({"out": out, **facts})
@@ -62,13 +66,43 @@ def predict(
 
 
 def refuse_options(
-    shots: int, llm: Sequence[str] | None, cache: Path | None, prices: str, budget: float | None
+    shots: int, embed: str, llm: Sequence[str] | None, cache: Path | None, prices: str, budget: float | None
 ) -> None:
     """Refuse options of language models for another model.
 
     Raises:
         HearthError: BAD_ARGUMENT.
     """
-    if shots or llm or cache or prices or budget is not None:
-        message = "--shots, --llm, --cache, --prices and --budget are about language models"
+    if shots or embed or llm or cache or prices or budget is not None:
+        message = "--shots, --embed, --llm, --cache, --prices and --budget are about language models"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="hearth model predict llm:MODEL@URL ...")
+
+
+def retrieval(
+    dataset: Path,
+    *,
+    embed: str,
+    split: str = "activities",
+    limit: int | None = None,
+    cache: Path | None = None,
+    as_json: bool = False,
+) -> None:
+    """Compare ways to find the most similar training text: by words, by vectors, and by both (table 4.5's LCS).
+
+    --embed is a folder with weights, or llm:MODEL@URL, whose server answers /v1/embeddings. Validation examples choose
+    the weight of both; the tests are original programs.
+
+    \b
+    Examples:
+      hearth model retrieval data_out --embed all-MiniLM-L6-v2
+      hearth model retrieval data_out --embed llm:nomic-embed-text@http://127.0.0.1:11434/v1 --limit 200
+    """
+    from hearth.analysis.retrieval_by_vectors import compared
+    from hearth.llm.embeddings import vectors_of
+    from hearth.llm.language_settings import Means
+
+    rows = compared(dataset, split, vectors_of(embed, Means(cache=cache)), limit)
+    if as_json:
+        output.emit({"embed": embed, "rows": rows})
+    else:
+        output.records(rows)

@@ -4,13 +4,13 @@ from pathlib import Path
 
 import typer
 
-from hearth.commands import output
+from hearth.commands import language_judge, output
 
 app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
-    help="Language models: probe a server that speaks the chat protocol, or serve a small model.",
+    help="Language models: probe a server that speaks the chat protocol, judge with one, serve a small one.",
 )
 
 
@@ -59,3 +59,35 @@ def serve(model: str = "", *, port: int = 8080, threads: int = 0, at_once: int =
     output.say(lines, {"model": name, "url": url, "name": f"llm:{name}@{url}"}, as_json)
     threading.Event().wait()
     del server
+
+
+@app.command()
+def prompts(role: str = "", *, as_json: bool = False) -> None:
+    """List the prompt pages and the text protocol with their fingerprints, or print the words of one.
+
+    Results name the fingerprints: the same weights do better or worse under other words.
+
+    \b
+    Examples:
+      hearth llm prompts
+      hearth llm prompts planner
+    """
+    from hearth.llm.prompt_pages import ROLES, every_page
+
+    pages = every_page()
+    if role and role not in pages:
+        raise typer.BadParameter(f"one of {', '.join(pages)}", param_hint="ROLE")
+    if role:
+        found = pages[role]
+        words = {"name": found.name, "fingerprint": found.fingerprint, "words": found.words}
+        output.say(found.text, words, as_json)
+        return
+    rows = [{"role": name if name in ROLES else "all agents", "page": each.name, "fingerprint": each.fingerprint}
+            for name, each in pages.items()]  # fmt: skip
+    if as_json:
+        output.emit(rows)
+    else:
+        output.records(rows)
+
+
+app.command("judge")(language_judge.judge)

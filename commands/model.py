@@ -19,6 +19,7 @@ app = typer.Typer(
 DEFAULT_MODEL = "reader"
 """The model that `model show` asks where a text stands alone."""
 
+app.command("retrieval")(language_predictions.retrieval)
 app.command("table")(model_tables.table)
 app.command("tables")(model_tables.tables)
 
@@ -98,6 +99,7 @@ def predict(
     sketches: str = "annotated",
     limit: int | None = None,
     shots: int = 0,
+    embed: str = "",
     llm: list[str] | None = None,
     cache: Path | None = None,
     prices: str = "",
@@ -107,7 +109,8 @@ def predict(
     """Predict a program for each execution of a part of a dataset, into a file that `score dataset` reads.
 
     A language model, llm:MODEL@URL, gets the texts with the most similar training examples (--shots). Its replies are
-    kept in --cache, and nothing is asked twice; the status is 1 if texts have no answer.
+    kept in --cache, and nothing is asked twice; the status is 1 if texts have no answer. With --embed, examples are
+    chosen by vectors, too; `model retrieval` prints what they bring.
 
     \b
     Examples:
@@ -117,9 +120,9 @@ def predict(
     """
     if model.startswith("llm:"):
         asked = language_predictions.asked_model(model, out, llm, cache, prices, budget, constrained)
-        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, limit, as_json)
+        language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, limit, embed, as_json)
         return
-    language_predictions.refuse_options(shots, llm, cache, prices, budget)
+    language_predictions.refuse_options(shots, embed, llm, cache, prices, budget)
     from hearth.commands.progress_line import bar
     from hearth.models.prediction_files import predict_part
 

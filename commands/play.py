@@ -37,6 +37,7 @@ def play(
     actions: str = "",
     full: bool = False,
     messages: bool = False,
+    images: bool = False,
     ticks: int = 250,
     within: float = ANSWER_WITHIN,
     form: str = "graph",
@@ -52,9 +53,8 @@ def play(
 
     An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal), `listen` or `listen:PORT`
     (a program that connects to that port of this machine), `stdio` (the program that runs this command), a language
-    model (llm:MODEL@URL), or `wait`.
-    Agents that are not named wait. docs/examples/agents.md describes the messages. The status is 1 if the goal is not
-    reached.
+    model (llm:MODEL@URL), or `wait`, as agents that are not named do. docs/examples/agents.md describes the messages.
+    The status is 1 if the goal is not reached.
 
     \b
     Examples:
@@ -77,7 +77,7 @@ def play(
     if scene.instruction and not quiet:
         output.note(f"{task}: {scene.instruction}")
     with ExitStack() as stack:
-        how = _How(ticks, within, form, messages, as_json, _transcript(transcript, stack))
+        how = _How(ticks, within, form, messages, images, as_json, _transcript(transcript, stack))
         playing = [_agent(seat, how, stack) for seat in seats]
         played = _play(scene, playing, seed, how, _actions(actions or scene.actions, known), not full)
         for each in playing:
@@ -104,6 +104,7 @@ class _How(NamedTuple):
     within: float
     form: str
     messages: bool
+    images: bool
     as_json: bool
     keep: Callable[[Mapping[str, Any]], None]
 
@@ -157,7 +158,7 @@ def _model(seat: _Seat, how: _How) -> Agent:
     if seat.number > 1:
         raise typer.BadParameter(f"agent {seat.number} is a language model; only agents 0 and 1 can be")
     need_model(seat.spec)
-    return player_of(seat.spec, Asking(), Means(seconds=how.within), "", how.messages, seat.number)
+    return player_of(seat.spec, Asking(images=how.images), Means(seconds=how.within), "", how.messages, seat.number)
 
 
 class Waiting:

@@ -7,7 +7,7 @@ that it says depends on the observations and the answers alone, so that recorded
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -21,7 +21,8 @@ from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import reason
 from hearth.llm.language_settings import Asking
 from hearth.llm.legal_commands import constraint
-from hearth.llm.prompt_pages import PromptPage, page
+from hearth.llm.picture_messages import pictured
+from hearth.llm.prompt_pages import PromptPage, page, unmarked
 from hearth.llm.replies import Reply
 from hearth.llm.turns import Transcript, Turn
 from hearth.schemas.agent_messages import ASK, TELL
@@ -34,9 +35,6 @@ from hearth.simulation.observation.views import View
 
 ACTOR, HELPER = 0, 1
 """Numbers of the agent that acts, and of its helper."""
-
-MARKUP = re.compile(r"<\|")
-"""The beginning of the marks by which chats are taken apart; a name of a thing must not write one."""
 
 THOUGHT = re.compile(r"<think>.*?</think>", re.DOTALL)
 """The thoughts that some models write before an answer."""
@@ -73,6 +71,7 @@ class Actor:
         messages: whether it may say something instead of doing something.
         number: of the agent; a helper has another prompt.
         form: the way in which the server is sent the grammar of legal commands (see `constraints`); "" for none.
+        eyes: makes what draws the pictures of an episode from its first view; a replay has none, and draws none.
     """
 
     subgoal = None
@@ -85,9 +84,10 @@ class Actor:
         messages: bool = False,
         number: int = ACTOR,
         form: str = "",
+        eyes: Callable[[View], Callable[[View], str]] | None = None,
     ) -> None:
         self._ask, self._asking, self._instruction = ask, asking or Asking(), instruction
-        self._messages, self._number, self._form = messages, number, form
+        self._messages, self._number, self._form, self._open = messages, number, form, eyes
         self._words: Words = protocol()
         self._page: PromptPage = page("helper" if number else "actor")
         self.reset_state()
@@ -102,12 +102,14 @@ class Actor:
         self._fault: Diagnostic | None = None
         self._history: list[tuple[str, str]] = []
         self._system = ""
+        self._eyes: Callable[[View], str] | None = None
 
     def reset(self, observation: View, goal: Goal | None, seed: int) -> None:
         """Begin an episode."""
         self.reset_state()
         self._goal, self._seed, self._told = goal or Goal(), seed, goal is not None
         self._system = self._first_message()
+        self._eyes = self._open(observation) if self._open is not None else None
 
     def _first_message(self) -> str:
         facts = {"agent": self._number, "other": HELPER - self._number, "ask": ASK, "saying": SAYING}
@@ -149,7 +151,13 @@ class Actor:
         """Ask the model, and return the choice in its answer; the next prompt says why an answer was refused."""
         said = self._observation(view, legal, stopped)
         messages = list(self._chat(said))
-        self.transcript.prompt(messages)
+        if self._asking.images:  # its place alone is in the digest of the prompts: the world says what it shows
+            self.transcript.prompt([*messages[:-1], {"role": "user", "content": pictured(said, "")}])
+            self.transcript.pictures += 1
+        else:
+            self.transcript.prompt(messages)
+        if self._eyes is not None:
+            messages[-1] = {"role": "user", "content": pictured(said, self._eyes(view))}
         more, keeps = constraint(self._form, legal, self._words) if self._form else ({}, None)
         seed = derive(self._seed, "turn", len(self.transcript.turns)) if self._asking.temperature > 0 else 0
         reply = self._ask(messages, seed, **more)
@@ -180,7 +188,7 @@ class Actor:
         if not self._told:
             text = text.replace(" You see  done.", "", 1)
         heard = [f"Agent {number} said: {printable(str(said))}." for number, said in view.messages]
-        return MARKUP.sub("< |", "\n".join([*heard, text]))
+        return unmarked("\n".join([*heard, text]))
 
     def _chat(self, said: str) -> Iterator[Mapping[str, Any]]:
         """Yield the messages of a prompt: how to act, earlier turns, and the observation."""

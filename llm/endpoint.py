@@ -14,8 +14,9 @@ from urllib.parse import urlsplit
 from hearth.llm.addresses import checked_url, is_here, key_for, read_name, without_key
 from hearth.llm.answer_cache import AnswerCache, Spent
 from hearth.llm.language_settings import Asking, Means
+from hearth.llm.picture_messages import PICTURE_TOKENS, pictures_in, without_pictures
 from hearth.llm.purse import Purse
-from hearth.llm.replies import Reply, read_reply
+from hearth.llm.replies import CHARACTERS, Reply, read_reply
 from hearth.llm.requests_with_retries import Failed, post, with_retries
 from hearth.llm.timed_connections import client, pause
 from hearth.schemas.diagnostics import HearthError
@@ -29,6 +30,9 @@ Client = Callable[[Sequence[Message]], str]
 
 OWN = "client:"
 """The address of a model that is asked through a client of one's own."""
+
+CHAT = "chat/completions"
+"""The path of chats behind a server's address."""
 
 LONGER = "max_completion_tokens"
 """The other name of `max_tokens`, which some servers insist on."""
@@ -113,18 +117,8 @@ class Endpoint:
             HearthError: NO_ANSWER: no try brought a reply; OVER_BUDGET; DAMAGED_FILE and UNWRITABLE of the cache.
         """
         body = self._body(messages, seed, more)
-        key = self._digest(body)
-        if (kept := self.cache.get(key)) is not None:
-            return kept
-        if self.means.offline:
-            message = f"the cache has no reply of `{self.model}` to this prompt"
-            raise HearthError.of(Code.NO_ANSWER, message, suggestion="ask the server: leave out offline")
-        size = len(_dumped(messages))
-        with self._room, self.purse.holding(size, self.asking.most_tokens):
-            reply = self._asked(body, size)
-            self.purse.pay(reply)
-        self.cache.put(key, self.model, reply)
-        return reply
+        size = _size(messages)
+        return self.kept_or_asked(body, size, self.asking.most_tokens, lambda: self._asked(body, size))
 
     def exchange(self, messages: Sequence[Message], **more: Any) -> Any:
         """Return the JSON of a reply as the server wrote it; nothing is kept, and the budget is not asked.
@@ -154,14 +148,8 @@ class Endpoint:
         return blake2b(_dumped([self.url, body]), digest_size=20).hexdigest()
 
     def _asked(self, body: dict[str, Any], size: int) -> Reply:
-        began = time.monotonic()
         once = self._through_client if self._client is not None else self._through_server
-        found = with_retries(
-            lambda: self._read(once(body), size), self.means.tries, self.where, self._count_failed, self._sleep
-        )
-        reply: Reply = found.data
-        text = without_key(reply.text, self._key)
-        return replace(reply, text=text, seconds=round(time.monotonic() - began, 3), tries=found.tries)
+        return self.tried(lambda: self._read(once(body), size))
 
     def _count_failed(self, reason: str) -> None:
         self.cache.failed(self.model, reason)
@@ -173,34 +161,77 @@ class Endpoint:
         return reply
 
     def _through_server(self, body: dict[str, Any]) -> Any:
-        """Return the JSON of one request to the server.
+        """Return the JSON of one chat request to the server; errors as of `send`."""
+        given = dict(body)
+        given[self._length] = given.pop("max_tokens")
+        try:
+            return self.send(CHAT, given)
+        except Failed as error:
+            if error.reason == "400" and LONGER in error.said and self._length != LONGER:
+                self._length, error.again, error.wait = LONGER, True, 0.0
+            raise
+
+    def send(self, path: str, body: Mapping[str, Any]) -> Any:
+        """Return the JSON of one request to the server, as it wrote it.
+
+        Args:
+            path: behind the address, such as `chat/completions`.
+            body: of the request.
 
         Raises:
             Failed: there is none.
         """
         import orjson
 
-        given = dict(body)
-        given[self._length] = given.pop("max_tokens")
         headers = {"content-type": "application/json", "accept": "application/json"}
         if self._key:
             headers["authorization"] = f"Bearer {self._key}"
+        base, mark, query = self.url.partition("?")
+        url = f"{base.rstrip('/')}/{path}{mark}{query}"
         self.sent += 1
         try:
-            data = post(_http(is_here(self.url)), self._chat_url, _dumped(given), headers, self.means.seconds)
-            return orjson.loads(data)
+            return orjson.loads(post(_http(is_here(self.url)), url, _dumped(body), headers, self.means.seconds))
         except orjson.JSONDecodeError:
             raise Failed("not JSON", "the reply is not JSON") from None
         except Failed as error:
             error.said = without_key(error.said, self._key)
-            if error.reason == "400" and LONGER in error.said and self._length != LONGER:
-                self._length, error.again, error.wait = LONGER, True, 0.0
             raise
 
-    @property
-    def _chat_url(self) -> str:
-        base, mark, query = self.url.partition("?")
-        return f"{base.rstrip('/')}/chat/completions{mark}{query}"
+    def kept_or_asked(self, body: Mapping[str, Any], size: int, most: int, ask: Callable[[], Reply]) -> Reply:
+        """Return the reply that is kept for a request, or ask for it, pay, and keep it.
+
+        Args:
+            body: the request, by which the reply is known.
+            size: characters of the prompt.
+            most: tokens of the reply, at most.
+            ask: asks the server.
+
+        Raises:
+            HearthError: NO_ANSWER; OVER_BUDGET; DAMAGED_FILE and UNWRITABLE of the cache.
+        """
+        key = self._digest(body)
+        if (kept := self.cache.get(key)) is not None:
+            return kept
+        if self.means.offline:
+            message = f"the cache has no reply of `{self.model}` to this prompt"
+            raise HearthError.of(Code.NO_ANSWER, message, suggestion="ask the server: leave out offline")
+        with self._room, self.purse.holding(size, most):
+            reply = ask()
+            self.purse.pay(reply)
+        self.cache.put(key, self.model, reply)
+        return reply
+
+    def tried(self, once: Callable[[], Any]) -> Reply:
+        """Return the reply that `once` brings, after as many tries as it may take, with its time and without the key.
+
+        Raises:
+            HearthError: NO_ANSWER.
+        """
+        began = time.monotonic()
+        found = with_retries(once, self.means.tries, self.where, self._count_failed, self._sleep)
+        reply: Reply = found.data
+        text = without_key(reply.text, self._key)
+        return replace(reply, text=text, seconds=round(time.monotonic() - began, 3), tries=found.tries)
 
     def _through_client(self, body: dict[str, Any]) -> Any:
         """Return the reply of a client of one's own, as servers write it.
@@ -219,6 +250,11 @@ class Endpoint:
         if not isinstance(text, str):
             raise Failed("not text", f"it returned {type(text).__name__}, not text", again=False)
         return {"choices": [{"message": {"content": text}}]}
+
+
+def _size(messages: Sequence[Message]) -> int:
+    """Return the characters of a prompt, a picture as many as its tokens have: its own say nothing of its price."""
+    return len(_dumped(without_pictures(messages))) + CHARACTERS * PICTURE_TOKENS * pictures_in(messages)
 
 
 def _dumped(value: Any) -> bytes:

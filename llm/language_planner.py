@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,9 +15,10 @@ from hearth.llm.constraints import FORMS, SCHEMA, keeps, schema_fields
 from hearth.llm.endpoint import Endpoint
 from hearth.llm.legal_commands import form_of
 from hearth.llm.prompt_pages import PromptPage, page
-from hearth.llm.replies import Reply
+from hearth.llm.replies import Reply, sums
 from hearth.llm.timed_connections import asking
 from hearth.models.interface import Request, Steps
+from hearth.models.text.mixed_similarity import MixedSimilarity
 from hearth.models.text.retrieval import Similarity, text_of
 from hearth.models.text_examples import Example
 from hearth.pipelines.readers.plans_in_words import parse_steps
@@ -63,12 +64,7 @@ class Planned:
             "warnings": dict(self.warnings),
             "unanswered": dict(self.unanswered),
             "disobeyed": self.disobeyed,
-            "cut": sum(reply.cut for reply in self.replies),
-            "tokens_in": sum(reply.tokens_in for reply in self.replies),
-            "tokens_out": sum(reply.tokens_out for reply in self.replies),
-            "seconds": round(sum(reply.seconds for reply in self.replies), 3),
-            "tries": sum(reply.tries for reply in self.replies),
-            "kept": sum(reply.kept for reply in self.replies),
+            **sums(self.replies),
         }
 
 
@@ -80,6 +76,7 @@ class LanguagePlanner:
         knowledge: the action grammar.
         examples: of training, from which those before a request are chosen by the words of their texts.
         shots: how many.
+        similarity: makes the similarity to the examples' texts; usually that of words.
 
     Attributes:
         planned: the counts of all answers.
@@ -89,14 +86,19 @@ class LanguagePlanner:
     """
 
     def __init__(
-        self, endpoint: Endpoint, knowledge: Knowledge, examples: Sequence[Example] = (), shots: int = 0
+        self,
+        endpoint: Endpoint,
+        knowledge: Knowledge,
+        examples: Sequence[Example] = (),
+        shots: int = 0,
+        similarity: Callable[[Sequence[str]], Similarity | MixedSimilarity] = Similarity,
     ) -> None:
         self._endpoint, self._knowledge, self._page = endpoint, knowledge, page("planner")
         first = {text_of(each.title, each.description): each for each in reversed(examples)}
         self._examples = list(first.values())[::-1]
         self._shots = min(shots, len(self._examples))
         texts = [text_of(each.title, each.description) for each in self._examples]
-        self._similarity = Similarity(texts) if self._shots else None
+        self._similarity = similarity(texts) if self._shots else None
         self._form = form_of(endpoint) if endpoint.asking.constrained else ""
         self._grammar: LineGrammar | None = step_grammar(knowledge) if self._form else None
         self._fields = self._constraint() if self._form else {}

@@ -38,6 +38,7 @@ class Asking:
         memory: earlier turns of the episode that it is shown again; 0 for none.
         most_turns: answers in an episode, at most; after them the agent waits until time is over.
         constrained: whether a grammar of the legal commands is sent, where the server obeys one.
+        images: whether the model is shown what the agent sees, a picture in each prompt's last message.
     """
 
     temperature: float = 0.0
@@ -45,10 +46,11 @@ class Asking:
     memory: int = 8
     most_turns: int = 80
     constrained: bool = False
+    images: bool = False
 
     def as_json(self) -> dict[str, Any]:
-        """Return the settings as results have them."""
-        return asdict(self)
+        """Return the settings as results have them; of pictures nothing where there are none, as in older results."""
+        return {name: value for name, value in asdict(self).items() if name != "images" or value}
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Any
 from hearth.kb.tools.line_grammars import line_grammar
 from hearth.llm.constraints import FORMS, keeps
 from hearth.llm.endpoint import Endpoint
+from hearth.llm.picture_messages import pictured
 from hearth.llm.replies import Reply, read_reply
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -22,11 +23,24 @@ ODD = line_grammar([["zebra ", ("1741", "2853")], ["quartz ", ("39", "58")]])
 GREETING = "Say hello in one short sentence."
 COUNT = "Count from 1 to 200, separated by spaces: 1 2 3 4"
 
-DOT = (
-    "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJ"
-    "AAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
-)
-"""A picture of one red dot."""
+COLOUR = "What colour is this picture? Answer with one word: red, green, blue or yellow."
+
+SQUARES = {
+    "red": (
+        "data:image/png;base64,"
+        "iVBORw0KGgoAAAANSUhEUgAAAEAAAABACAIAAAAlC+aJAAAAT0lEQVR42u3PQQkAAAgEsAtx/ZMZxgi+hcEKLNO+FgEBAQEBAQEB"
+        "AQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQGBywKqxUDxqh7TUQAAAABJRU5ErkJggg=="
+    ),
+    "blue": (
+        "data:image/png;base64,"
+        "iVBORw0KGgoAAAANSUhEUgAAAEAAAABACAIAAAAlC+aJAAAAT0lEQVR42u3PQQkAAAgEsAtx/ZMZxgi+hcEKLO28FgEBAQEBAQEB"
+        "AQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQEBAQGBywKpTkDxtnpV5wAAAABJRU5ErkJggg=="
+    ),
+}
+"""Pictures of one colour."""
+
+IMAGES = "images"
+"""The finding about pictures."""
 
 TOOL = {
     "type": "function",
@@ -41,7 +55,7 @@ TOOL = {
 def probe(endpoint: Endpoint) -> dict[str, Any]:
     """Ask a server about twenty short questions, and return which parts of a request it obeys.
 
-    The findings about grammars are kept in the endpoint's cache, for runs.
+    The findings about grammars and pictures are kept in the endpoint's cache, for runs.
 
     Raises:
         HearthError: NO_ANSWER: it does not answer even a plain question.
@@ -62,7 +76,7 @@ def probe(endpoint: Endpoint) -> dict[str, Any]:
         "tools": _finding(
             lambda: _json(few, "Open the fridge with number 7.", tools=[TOOL], tool_choice="required"), _calls
         ),
-        "images": _finding(lambda: _json(few, [{"type": "text", "text": "What colour?"}, _picture()]), _answers),
+        IMAGES: _sees(few),
     }
     found = {**facts, **_grammars(few)}
     _keep(endpoint, found)
@@ -71,20 +85,41 @@ def probe(endpoint: Endpoint) -> dict[str, Any]:
 
 def grammar_facts(endpoint: Endpoint) -> Mapping[str, Any]:
     """Return which grammars a server obeys, of an earlier probe or of one made now."""
+
+    known = _known(endpoint)
+    if any(form not in known for form in FORMS):
+        known = {**known, **_grammars(_impatient(endpoint))}
+        _keep(endpoint, known)
+    return known
+
+
+def need_sight(endpoint: Endpoint) -> None:
+    """Look whether a server's model sees pictures, by an earlier probe or by one made now.
+
+    Raises:
+        HearthError: BAD_ARGUMENT: it does not; what it answers would be without them, and nobody would notice.
+    """
+    known = _known(endpoint)
+    if IMAGES not in known:
+        known = {**known, IMAGES: _sees(_impatient(endpoint))}
+        _keep(endpoint, known)
+    if known[IMAGES] != OBEYED:
+        how = "refuses pictures" if known[IMAGES] == REFUSED else "does not distinguish a red picture from a blue one"
+        message = f"`{endpoint.model}` at {endpoint.where} {how}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out images, or take a model that sees")
+
+
+def _known(endpoint: Endpoint) -> Mapping[str, Any]:
     import orjson
 
-    known = endpoint.cache.facts(endpoint.model, endpoint.url)
-    if known is not None:
-        return dict(orjson.loads(known))
-    found = _grammars(_impatient(endpoint))
-    _keep(endpoint, found)
-    return found
+    return dict(orjson.loads(endpoint.cache.facts(endpoint.model, endpoint.url) or "{}"))
 
 
 def _keep(endpoint: Endpoint, found: Mapping[str, Any]) -> None:
     import orjson
 
-    endpoint.cache.put_facts(endpoint.model, endpoint.url, orjson.dumps({form: found[form] for form in FORMS}).decode())
+    facts = {name: found[name] for name in (*FORMS, IMAGES) if name in found}
+    endpoint.cache.put_facts(endpoint.model, endpoint.url, orjson.dumps(facts).decode())
 
 
 def _impatient(endpoint: Endpoint) -> Endpoint:
@@ -130,12 +165,13 @@ def _reply(endpoint: Endpoint, question: Any, **more: Any) -> Reply:
     return replace(reply, seconds=round(time.monotonic() - began, 3))
 
 
-def _picture() -> Mapping[str, Any]:
-    return {"type": "image_url", "image_url": {"url": DOT}}
+def _sees(endpoint: Endpoint) -> str:
+    """Return whether the model distinguishes two colours: a server that drops pictures gives the same answer twice."""
 
+    def colours() -> list[str]:
+        return [_reply(endpoint, pictured(COLOUR, url)).text.lower() for url in SQUARES.values()]
 
-def _answers(given: Mapping[str, Any]) -> bool:
-    return read_reply(given, 0) is not None
+    return _finding(colours, lambda said: "red" in said[0] and "blue" in said[1] and "red" not in said[1])
 
 
 def _has_logprobs(given: Mapping[str, Any]) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -37,6 +37,18 @@ class Reply:
     kept: bool = False
 
 
+def sums(replies: Sequence[Reply]) -> dict[str, Any]:
+    """Return the sums of replies, as results have them."""
+    return {
+        "cut": sum(reply.cut for reply in replies),
+        "tokens_in": sum(reply.tokens_in for reply in replies),
+        "tokens_out": sum(reply.tokens_out for reply in replies),
+        "seconds": round(sum(reply.seconds for reply in replies), 3),
+        "tries": sum(reply.tries for reply in replies),
+        "kept": sum(reply.kept for reply in replies),
+    }
+
+
 def read_reply(given: Any, asked: int) -> Reply | None:
     """Return the reply in a server's JSON; None where there is none.
 
@@ -52,11 +64,11 @@ def read_reply(given: Any, asked: int) -> Reply | None:
     if text is None:
         return None
     usage = given.get("usage")
-    tokens_in, tokens_out = (_count(usage, name) for name in ("prompt_tokens", "completion_tokens"))
-    counted = tokens_in is not None and tokens_out is not None
-    if tokens_in is None or tokens_out is None:
-        tokens_in, tokens_out = -(-asked // CHARACTERS), -(-len(text) // CHARACTERS)
-    return Reply(text, tokens_in, tokens_out, counted, cut=choice.get("finish_reason") == "length")
+    asks = (("prompt_tokens", asked), ("completion_tokens", len(text)))
+    (one, tokens_in), (other, tokens_out) = (tokens_of(usage, name, size) for name, size in asks)
+    if not (one and other):  # of a server that counts one kind alone, neither is believed
+        (_, tokens_in), (_, tokens_out) = (tokens_of(None, name, size) for name, size in asks)
+    return Reply(text, tokens_in, tokens_out, one and other, cut=choice.get("finish_reason") == "length")
 
 
 def _first(choices: Any) -> Mapping[str, Any] | None:
@@ -82,6 +94,12 @@ def _text(message: Mapping[str, Any]) -> str | None:
 def well_formed(text: str) -> str:
     """Return a text that can be written as UTF-8: halves of characters are replaced by `?`."""
     return text.encode("utf-8", "replace").decode()
+
+
+def tokens_of(usage: Any, name: str, characters: int) -> tuple[bool, int]:
+    """Return whether a server counted, and its tokens of a kind, or their estimate from characters."""
+    found = _count(usage, name)
+    return (True, found) if found is not None else (False, -(-characters // CHARACTERS))
 
 
 def _count(usage: Any, name: str) -> int | None:

@@ -42,6 +42,7 @@ class Transcript:
         cut: replies that ended because they were too long.
         disobeyed: replies that are outside the grammar that was sent.
         constraint: the way in which the grammar of legal commands was sent; "" where none was.
+        pictures: prompts with a picture.
     """
 
     turns: list[Turn] = field(default_factory=list)
@@ -53,6 +54,7 @@ class Transcript:
     cut: int = 0
     disobeyed: int = 0
     constraint: str = ""
+    pictures: int = 0
     _asked: Any = field(default_factory=lambda: blake2b(digest_size=16))
     _requests: set[bytes] = field(default_factory=set)
 
@@ -80,7 +82,8 @@ class Transcript:
         self.estimated += not reply.counted
 
     def as_json(self) -> dict[str, Any]:
-        """Return the transcript as result files have it."""
+        """Return the transcript as result files have it, and pictures only where there were some."""
+        pictures = {"pictures": self.pictures} if self.pictures else {}
         return {
             "turns": [[turn.tick, turn.answer, turn.fault or None] for turn in self.turns],
             "asked": self._asked.hexdigest(),
@@ -92,8 +95,12 @@ class Transcript:
             "cut": self.cut,
             "disobeyed": self.disobeyed,
             "constraint": self.constraint,
+            **pictures,
         }
 
+
+PICTURES = "pictures"
+"""The count that only transcripts with pictures have."""
 
 COUNTS = ("tokens_in", "tokens_out", "tries", "estimated", "cut", "disobeyed")
 
@@ -111,9 +118,10 @@ def faults_of(transcript: Mapping[str, Any]) -> Counter[str]:
 def is_transcript(given: Any) -> bool:
     """Return whether a value of JSON, perhaps a stranger's, is a transcript."""
     names = {"turns", "asked", "seconds", "constraint", *COUNTS}
-    if not isinstance(given, dict) or given.keys() != names or not isinstance(given["turns"], list):
+    if not isinstance(given, dict) or given.keys() - {PICTURES} != names or not isinstance(given["turns"], list):
         return False
-    counted = all(type(given[name]) is int and 0 <= given[name] <= LARGEST for name in COUNTS)
+    counts = [given[name] for name in (*COUNTS, PICTURES) if name in given]
+    counted = all(type(count) is int and 0 <= count <= LARGEST for count in counts)
     timed = type(given["seconds"]) in (int, float) and 0 <= given["seconds"] <= LARGEST
     return (
         counted

@@ -4,9 +4,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
-from typing import Any
-
-import orjson
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.format.case_rows import start_of
@@ -25,7 +22,6 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import Program
 from hearth.schemas.syntax import print_lines
-from hearth.schemas.terminal import shown_line
 from hearth.scoring.dataset_scores import chosen
 from hearth.simulation.rules import RULES
 from hearth.storage import chosen_files
@@ -110,14 +106,9 @@ def scorer_of(trained: Trained) -> Scorer:
 
 def write(predicted: Iterator[tuple[str, Steps]], path: Path) -> int:
     """Write a file of predictions, a JSON object a line; their number."""
-    lines = [_line({"id": name, "predicted": list(print_lines(Program(steps=steps)))}) for name, steps in predicted]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    chosen_files.write(path, b"".join(lines))
-    return len(lines)
-
-
-def _line(row: dict[str, Any]) -> bytes:
-    return shown_line(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE))
+    rows = [{"id": name, "predicted": list(print_lines(Program(steps=steps)))} for name, steps in predicted]
+    chosen_files.write_rows(path, rows)
+    return len(rows)
 
 
 def predict_part(

@@ -6,12 +6,14 @@ import shutil
 import stat
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.terminal import shown_line
 from hearth.storage.files import replacing
 
 _STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
@@ -46,6 +48,14 @@ def write(path: Path, data: bytes) -> None:
     """Write a whole file of the user's, or none; errors as of `writing`."""
     with writing(path) as temporary:
         temporary.write_bytes(data)
+
+
+def write_rows(path: Path, rows: Iterable[Mapping[str, Any]]) -> None:
+    """Write rows as JSON lines, in a folder that need not exist; errors as of `writing`."""
+    import orjson
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write(path, b"".join(shown_line(orjson.dumps(row, option=orjson.OPT_APPEND_NEWLINE)) for row in rows))
 
 
 def _is_stream(path: Path) -> bool:

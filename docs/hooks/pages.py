@@ -293,7 +293,29 @@ def diagram() -> str:
     return str(beside("table_pages").diagram())
 
 
-WRITTEN: dict[str, Callable[[], str]] = {"tables.md": tables, "pictures/tables.svg": diagram}
+def prompts() -> str:
+    """Return the page of all prompts, with their fingerprints."""
+    from hearth.llm.prompt_pages import every_page
+
+    intro = """\
+        # Prompts
+
+        The words that language models are given. A fingerprint is a digest of a page's file; results name it, so that a
+        score says under which words it was made. `hearth llm prompts` prints the same.
+        """
+    parts = [dedent(intro)]
+    for role, each in every_page().items():
+        parts.append(
+            f"\n## {role}\n\n`{each.name}`, fingerprint `{each.fingerprint}`\n\n```yaml\n{each.text.strip()}\n```\n"
+        )
+    return "".join(parts)
+
+
+WRITTEN: dict[str, Callable[[], str]] = {
+    "tables.md": tables,
+    "pictures/tables.svg": diagram,
+    "prompts.md": prompts,
+}
 """Pages and pictures of `docs/` that are kept in the checkout; `python docs/hooks/pages.py` writes them."""
 
 

@@ -174,11 +174,13 @@ class Similarity:
         """Return the places of the most similar known texts for each text, best first, and their similarities."""
         if not texts:
             return []
-        alike = self._projected(self.weights.transform(texts)) @ self.known.T
-        # Sums of floats depend on the order of words: rounding makes them equal.
-        rows = (alike if self.projection is not None else alike.toarray()).round(9)
-        places = (-rows).argsort(axis=1, kind="stable")[:, :count]
-        return [(place.tolist(), row[place].tolist()) for place, row in zip(places, rows, strict=True)]
+        return ranked(self.alike(texts), count)
+
+    def alike(self, texts: Sequence[str]) -> np.ndarray:
+        """Return the similarity of each text to each known one."""
+        found: Any = self._projected(self.weights.transform(texts)) @ self.known.T
+        alike: np.ndarray = found if self.projection is not None else found.toarray()
+        return alike
 
     def _projected(self, weights: Any) -> np.ndarray | Any:
         if self.projection is None:
@@ -186,6 +188,13 @@ class Similarity:
         from sklearn.preprocessing import normalize
 
         return normalize(self.projection.transform(weights))
+
+
+def ranked(alike: np.ndarray, count: int) -> list[tuple[list[int], list[float]]]:
+    """Return the places of the greatest similarities in each row, best first, and these; of equal ones the first."""
+    rows = alike.round(9)  # sums of floats depend on the order of words: rounding makes them equal
+    places = (-rows).argsort(axis=1, kind="stable")[:, :count]
+    return [(place.tolist(), row[place].tolist()) for place, row in zip(places, rows, strict=True)]
 
 
 def _terms(text: str) -> list[str]:

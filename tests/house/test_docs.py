@@ -46,8 +46,8 @@ def test_every_failure_has_its_meaning(pages):
     assert rows["| `INSIDE_CLOSED`"] == "the thing is inside the other thing, which is closed"
 
 
-@pytest.mark.parametrize("name", ["tables.md", "pictures/tables.svg"])
-def test_the_page_of_the_tables_is_current(pages, name):
+@pytest.mark.parametrize("name", ["tables.md", "pictures/tables.svg", "prompts.md"])
+def test_pages_that_are_kept_are_current(pages, name):
     kept = ROOT / "docs" / name
     assert kept.read_text("utf-8") == pages.WRITTEN[name](), "write it with: python docs/hooks/pages.py"
 

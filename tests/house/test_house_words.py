@@ -26,8 +26,8 @@ ROOMS = (
 
 LINTER = ROOT / "tests/house/plain_words.py"
 
-NAMING = ("test_house_words.py", "plain_words.py")
-"""Files that name the phrases."""
+NAMING = ("test_house_words.py", "plain_words.py", "prompts.md")
+"""Files that name the phrases, and the page that quotes the prompts, whose words have fingerprints."""
 
 KINDS = frozenset({".py", ".yaml", ".md", ".expected", ".txt"})
 """Endings of the files that are read; pages and YAML too."""
