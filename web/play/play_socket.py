@@ -15,6 +15,7 @@ from hearth.web.handler_threads import in_thread
 from hearth.web.messages import int_field, text_field
 from hearth.web.person_socket import Link
 from hearth.web.play.game_messages import Telling
+from hearth.web.play.game_store import is_full
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.play_trials import PERSON, PROGRAM, SIZE
 from hearth.web.play.player_presence import SIGN_EVERY, give_sign
@@ -124,8 +125,11 @@ class Page:
             return self._drawn().pick(x, y)
 
     def _code(self) -> str:
-        """Return the code that the first of two people gives the second."""
-        return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
+        """Return the code that the first of two people gives the second; "" once somebody has the second seat."""
+        if self.live.game.trial.helper != PERSON or self.number != 0:
+            return ""
+        taken = self.link.web.store.read(lambda connection: is_full(connection, self.live.stored.id))
+        return "" if taken else self.live.stored.code
 
     def _act(self, tick: int, text: str | None) -> dict[str, Any] | None:
         with self.live.lock:
