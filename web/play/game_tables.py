@@ -56,6 +56,15 @@ SIGNS = sql.Table(
 )
 """The people of games for two who are present."""
 
+OPENINGS = sql.Table(
+    "play_openings",
+    METADATA,
+    _game(),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    sql.Column("tab", sql.Text, primary_key=True, comment="random, another each time that the page is opened"),
+)
+"""The times that each person opened the page of a game: a reload and another tab are further ones."""
+
 WAITING = sql.Table(
     "play_waiting",
     METADATA,

@@ -15,7 +15,7 @@ from hearth.web.handler_threads import in_thread
 from hearth.web.messages import int_field, text_field
 from hearth.web.person_socket import Link
 from hearth.web.play.game_messages import Telling
-from hearth.web.play.game_store import is_full
+from hearth.web.play.game_store import is_full, keep_opening
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.play_trials import PERSON, PROGRAM, SIZE
 from hearth.web.play.player_presence import SIGN_EVERY, give_sign
@@ -64,7 +64,7 @@ class Page:
         if kind == "hello":
             self.tab = text_field(message, "tab", 60)
             if message.get("again") is not True:  # a page that comes back does not take the session from a newer one
-                await in_thread(sessions.take_tab, self.link.web.store, self.link.session.id, self.tab)
+                await in_thread(self._open)
             async with self._sending:
                 await self.link.send(await in_thread(self._begin))
         elif kind == "act":
@@ -83,6 +83,12 @@ class Page:
             return
         x, y = (int_field(message, name, 0, size - 1) for name, size in zip("xy", SIZE, strict=True))
         await self.link.send({"type": "picked", "id": await in_thread(self._pick, x, y)})
+
+    def _open(self) -> None:
+        """Make this page's tab the one that may act, and keep that the page was opened."""
+        sessions.take_tab(self.link.web.store, self.link.session.id, self.tab)
+        where = self.live.stored.id, self.number, self.tab
+        self.link.web.store.write(lambda connection: keep_opening(connection, *where))
 
     def _begin(self) -> dict[str, Any]:
         with self.live.lock:
