@@ -127,7 +127,9 @@ class Client:
         answer = self.http.post(path, data=data)
         assert answer.status_code < 500, answer.status_code
         if path == "/begin":
-            self.page = self.http.get(answer.headers["location"]).text
+            there = self.http.get(answer.headers["location"])
+            assert there.status_code < 500, there.status_code
+            self.page = there.text
         return str(answer.headers.get("location", ""))
 
     def stage(self) -> str:

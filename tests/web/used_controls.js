@@ -22,7 +22,8 @@
 
   function told(control) {
     const inHead = control.matches("a.skip") || control.closest("header.top");
-    const page = folded(location.pathname).replace(/\/new$/, "/"); // a form that was refused is shown again
+    const page = folded(location.pathname).replace(/\/new$/, "/") // a form that was refused is shown again
+      .replace("/review/*/mend", "/task/*/compose"); // the same page, with the program of somebody else
     return { page: inHead ? "every page" : page, control: named(control) };
   }
 

@@ -18,6 +18,7 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.optional_libraries import library
+from hearth.web.phrases import thing_name
 from hearth.web.play import game_store
 from hearth.web.play.game_messages import goal_words, part_words
 from hearth.web.play.game_results import as_bytes, results
@@ -138,7 +139,7 @@ def game_page(visit: Visit) -> Response:
         "play/game.html",
         game=live.stored.id,
         interface=game.trial.interface,
-        title=game.trial.title,
+        title=", ".join(map(thing_name, game.trial.title.split(", "))),
         instruction=game.trial.instruction if number == 0 else "",
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,

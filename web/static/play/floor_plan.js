@@ -1,8 +1,7 @@
 // The floor plan (panel E): rooms, what is known of furniture, characters with facing, trails and what they hold.
-import { name } from "./words.js";
+import { name, say } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const SIDES = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
 function made(tag, attributes, text) {
   const node = document.createElementNS(SVG, tag);
@@ -77,12 +76,12 @@ export class FloorPlan {
   }
 
   told(state) {
-    const room = (id) => (id ? name(state.things, id) : "no room");
+    const room = (id) => (id ? name(state.things, id) : "–");
+    const sides = say("sides").split(", ");
     const said = state.agents.filter((agent) => agent.place).map((agent) => {
-      const side = SIDES[Math.round(agent.place[2] / 45) % 8];
-      const who = agent.agent === state.me ? "You are" : "The other is";
-      return `${who} in ${room(agent.room)}, facing ${side}.`;
+      const side = sides[Math.round(agent.place[2] / 45) % 8];
+      return say(agent.agent === state.me ? "plan_you" : "plan_other", { room: room(agent.room), side });
     });
-    return `Floor plan. ${said.join(" ")}`;
+    return said.join(" ");
   }
 }

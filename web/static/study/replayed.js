@@ -14,13 +14,13 @@ function go(to) {
 function stop() {
   clearInterval(timer);
   timer = 0;
-  play.textContent = "Play";
+  play.textContent = play.dataset.play;
 }
 
 play.onclick = () => {
   if (timer) { stop(); return; }
   if (now === last) go(0);
-  play.textContent = "Pause";
+  play.textContent = play.dataset.pause;
   timer = setInterval(() => { go(now + 1); if (now === last) stop(); }, PAUSE);
 };
 back.onclick = () => { stop(); go(now - 1); };
