@@ -198,7 +198,7 @@ def _rect(node: Node) -> list[float] | None:
 
 
 def floor_plan(home: Home) -> list[list[Any]]:
-    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id.
+    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id, name.
 
     What surrounds a door is a `frame`: nothing can be done with it.
     """
@@ -207,7 +207,13 @@ def floor_plan(home: Home) -> list[list[Any]]:
     order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
     frames = {node.id for node in order if node.category == "Doors" and "CAN_OPEN" not in node.properties}
     return [
-        ["frame" if node.id in frames else kinds[node.category], node.class_name, _rect(node), node.id]
+        [
+            "frame" if node.id in frames else kinds[node.category],
+            node.class_name,
+            _rect(node),
+            node.id,
+            thing_name(label(node.class_name)),
+        ]  # fmt: skip
         for node in order
     ]
 

@@ -28,18 +28,18 @@ export class FloorPlan {
     for (const layer of ["rooms", "furniture", "walls", "names", "trails", "characters"]) {
       this.layers[layer] = this.svg.appendChild(made("g", { class: layer }));
     }
-    for (const [kind, className, box, id] of state.plan) this.fixed(kind, className, box, id);
+    for (const each of state.plan) this.fixed(...each);
     this.drawn = new Set();
   }
 
-  fixed(kind, className, box, id) {
+  fixed(kind, className, box, id, words) {
     const layer = kind === "room" ? "rooms" : "walls";
     const shape = this.layers[layer].appendChild(made("rect", { ...this.rect(box), class: `${kind} ${className}` }));
     // A finger is taken to mean what can be pressed nearby: walls and windows, of which nothing can be done, are not.
     if (["room", "door"].includes(kind)) shape.addEventListener("click", () => this.choose(id));
     if (kind !== "room") return;
     const [x, y] = [(box[0] + box[2]) / 2, this.high - box[3] + 0.45];
-    this.layers.names.appendChild(made("text", { x, y, class: "room-name" }, className.replaceAll("_", " ")));
+    this.layers.names.appendChild(made("text", { x, y, class: "room-name" }, words));
   }
 
   rect([x0, z0, x1, z1]) {
