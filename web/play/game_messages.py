@@ -206,16 +206,8 @@ def floor_plan(home: Home) -> list[list[Any]]:
     nodes = [home.node(i) for i in range(len(home.ids)) if not home.absent >> i & 1]
     order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
     frames = {node.id for node in order if node.category == "Doors" and "CAN_OPEN" not in node.properties}
-    return [
-        [
-            "frame" if node.id in frames else kinds[node.category],
-            node.class_name,
-            _rect(node),
-            node.id,
-            thing_name(label(node.class_name)),
-        ]  # fmt: skip
-        for node in order
-    ]
+    rows = [(node, "frame" if node.id in frames else kinds[node.category]) for node in order]
+    return [[kind, node.class_name, _rect(node), node.id, thing_name(label(node.class_name))] for node, kind in rows]
 
 
 PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
