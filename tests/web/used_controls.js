@@ -10,6 +10,7 @@
     const { localName: tag, dataset } = control;
     if (control.closest("#plan")) return `plan ${control.classList[0]}`;
     if (control.matches("button.thing")) return "button thing";
+    if (control.matches("button.play")) return "button play or pause";
     if (dataset.instruction) return `button ${dataset.instruction.split(" ")[0]}`;
     if (dataset.move !== undefined) return `button ${dataset.move || "Wait"}`;
     if (tag === "a") return `a ${folded(control.getAttribute("href").replace(location.origin, ""))}`;
