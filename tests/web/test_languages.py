@@ -19,7 +19,7 @@ from hearth.studies.study import LANGUAGES as STUDY_LANGUAGES
 from hearth.web.phrases import ENGLISH, LANGUAGES, MIRRORED, NOT_FOR_PEOPLE, phrases, preferred
 from hearth.web.play.game_messages import usable_things
 from hearth.web.play.games import Game
-from hearth.web.play.play_trials import trial
+from hearth.web.play.play_trials import helpers, trial
 
 OTHERS = [each for each in LANGUAGES if each not in (ENGLISH, MIRRORED)]
 
@@ -65,6 +65,11 @@ def test_every_thing_and_task_of_the_challenges_has_a_name(language):
                 home = Game(trial(task, known), known).start.home
                 wanted |= {label(home.classes[i]) for i in indices(usable_things(home))}
     assert sorted(wanted - set(phrases(language)["things"])) == []
+
+
+def test_every_helper_has_words_for_people():
+    assert set(phrases()["helpers"]) == set(helpers()) == set(phrases("de")["helpers"])
+    assert len(set(phrases()["helpers"].values())) == len(helpers()), "two helpers have the same words"
 
 
 def test_a_study_names_a_language_that_there_is():
