@@ -35,7 +35,7 @@ def _values(study: Study, table: str, column: str) -> Iterator[tuple[str, str]]:
 
 
 def _asked(question: Question) -> str:
-    """Return a question with what may be answered: `How helpful was it? (1 to 7; 1 hurting, 7 helpful)`."""
+    """Return a question with its answers: `How helpful was it? (1 to 7; 1 hurting, 7 helpful)`."""
     if question.kind == "scale":
         words = ", ".join(f"{number} {label}" for number, label in question.labels)
         return f"{question.text} ({question.low} to {question.high}{'; ' if words else ''}{words})"

@@ -40,7 +40,7 @@ class Moment:
     Attributes:
         tick: from 0.
         seconds: when the person decided, since the trial was begun; None if that is not known.
-        acts: of those who did something; who waited is not among them.
+        acts: the attempts; a character that waited has none.
         shown: the step of the 3D replay that shows the home after this tick.
     """
 

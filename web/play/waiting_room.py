@@ -1,4 +1,4 @@
-"""The waiting room of Play: who comes alone is paired with the next, or plays with a helper when nobody comes."""
+"""The waiting room of Play: a person who comes alone is paired with the next, or plays with a helper if nobody comes."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ class Waiting(NamedTuple):
 
 
 def wait(connection: sql.Connection, session: str, knowledge: Knowledge) -> Waiting:
-    """Give a sign of somebody who waits, and pair the person with whoever has waited longest, within a transaction."""
+    """Give a sign of a person who waits, and pair the person with the one who has waited longest, in a transaction."""
     now = time.time()
     mine = _row(connection, session)
-    if mine is None or (not mine.game and now - mine.at > GONE_AFTER):  # who was away waits from now on
+    if mine is None or (not mine.game and now - mine.at > GONE_AFTER):  # a person who was away waits from now on
         leave(connection, session)
         connection.execute(sql.insert(WAITING).values(session=session, since=now, at=now, game=""))
         mine = _row(connection, session)
@@ -98,7 +98,7 @@ def look(visit: Visit) -> Response:
 
 
 def with_stand_in(visit: Visit) -> Response:
-    """Begin a game with the stand-in; whoever was paired meanwhile plays with that person."""
+    """Begin a game with the stand-in; a person who was paired meanwhile plays with the other."""
 
     def work(connection: sql.Connection) -> str:
         mine = _row(connection, visit.person)
