@@ -1,4 +1,4 @@
-"""The waiting room of Play: a person who comes alone is paired with the next, or plays with a helper if nobody comes."""
+"""The waiting room of Play: a person who comes alone is paired with the next, or plays with a helper instead."""
 
 from __future__ import annotations
 
