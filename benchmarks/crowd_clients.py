@@ -125,7 +125,7 @@ class Client:
 
     def _post(self, path: str, data: dict[str, str]) -> str:
         answer = self.http.post(path, data=data)
-        assert answer.status_code < 500, answer.status_code
+        assert answer.status_code < 500 and answer.status_code != 429, answer.status_code
         if path == "/begin":
             there = self.http.get(answer.headers["location"])
             assert there.status_code < 500, there.status_code
@@ -223,6 +223,7 @@ class Page:
             self.page.goto(self.server.address + link)
             if self.page.get_by_role("button", name="Begin").count():
                 self._press('form[action="/begin"] button')
+            assert self.page.locator('form[action="/study/agree"]').count()  # many begin at once: it may be too fast
 
         again(work)
 
@@ -237,7 +238,9 @@ class Page:
             if not self.page.locator('form[action="/study/agree"]').count():
                 self.page.goto(f"{self.server.address}/study/")
             text = self.page.content()
-            return next(stage for mark, stage in STAGES.items() if mark in text)
+            found = next((stage for mark, stage in STAGES.items() if mark in text), "")
+            assert found, text[:200]
+            return found
 
         return again(work)
 

@@ -45,6 +45,10 @@ FEWEST_VOWELS = 0.15
 """Share of vowels in the letters of words, of any language that is written in Latin letters."""
 
 
+FEWEST_LETTERS = 10
+"""Letters below which the share says nothing, as in "Watch TV"."""
+
+
 def flags(study: Study, standing: Standing, others: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the flags of a person, in the order of `FLAGS`.
 
@@ -119,4 +123,5 @@ def is_gibberish(text: Any) -> bool:
     if len(letters) < 5 or len(letters) < 0.5 * len(re.sub(r"\s", "", str(text))):
         return False
     vowels = sum(each in "aeiouy" for each in letters)
-    return (len(words) >= 3 and len(set(words)) == 1) or vowels < FEWEST_VOWELS * len(letters)
+    mute = len(letters) >= FEWEST_LETTERS and vowels < FEWEST_VOWELS * len(letters)
+    return mute or (len(words) >= 3 and len(set(words)) == 1)
