@@ -1,7 +1,7 @@
 // Put into every page of a test: reports each control that the page shows, each that somebody uses, and each button
 // that was pressed and changed nothing.
 (() => {
-  const CONTROLS = "a[href], button, input:not([type=hidden]), select, textarea, summary, video[controls], [role=application], #plan .piece, #plan .room, #plan .door";
+  const CONTROLS = "a[href], button, input:not([type=hidden]), select, textarea, summary, video[controls], [role=application][id], #game #plan .piece, #game #plan .room, #game #plan .door";
   const PATIENCE = 4_000; // milliseconds within which a button must have changed something
   const folded = (path) => path.split("?")[0].split("/").map((part) => (/\d/.test(part) || part.length > 20 ? "*" : part)).join("/");
   const words = (text) => text.replace(/[▴▾]/g, "").replace(/[0-9a-f]{12,}|\d+/g, "*").replace(/\s+/g, " ").trim().slice(0, 60);
