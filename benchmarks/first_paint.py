@@ -43,7 +43,7 @@ def paint(browser: Browser, address: str, path: str, kbits: float, latency: floa
     network.send("Network.emulateNetworkConditions", limits)
     network.on("Network.loadingFinished", lambda each: got.append(each["encodedDataLength"]))
     page.goto(address + path, wait_until="load")
-    while (painted := page.evaluate(PAINT) / 1000) < 0:  # a page's policy allows no text to be run that waits for it
+    while (painted := page.evaluate(PAINT) / 1000) < 0:  # `wait_for_function` is refused by the policy
         page.wait_for_timeout(100)
     loaded = page.evaluate("performance.getEntriesByType('navigation')[0].loadEventEnd") / 1000
     context.close()

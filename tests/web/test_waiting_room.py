@@ -1,4 +1,4 @@
-"""The waiting room of Play: who comes alone is paired with the next, is told the time, or plays with a helper."""
+"""The waiting room of Play: a person who comes alone is paired with the next, or plays with a helper."""
 
 from __future__ import annotations
 
