@@ -21,7 +21,7 @@ FEWEST_STEPS = 3
 """Steps below which a program is hardly an activity."""
 
 SIGNS = {
-    "gibberish": "the title or the description is no words",
+    "gibberish": "the title or the description has no words",
     "again": "another description has the same words",
     "short": "the program has fewer than three steps",
 }
@@ -61,7 +61,7 @@ def _folded(text: Row) -> str:
 
 
 def item(visit: Visit) -> Response:
-    """Return a program next to its description, with what its reviewers wrote.
+    """Return a program next to its description, with the notes of its reviewers.
 
     Raises:
         WebError: UNKNOWN_ID.

@@ -138,7 +138,7 @@ def played_before(connection: sql.Connection, task: str) -> int:
 
 
 def keep_opening(connection: sql.Connection, game: str, agent: int, tab: str) -> None:
-    """Keep that a person opened the page of a game, within a transaction; a tab that comes back is no further one."""
+    """Keep that a person opened the page of a game, within a transaction; a tab that comes back is counted once."""
     row = {"game": game, "agent": agent, "tab": tab}
     known = sql.select(OPENINGS.c.tab).where(*(OPENINGS.c[name] == value for name, value in row.items()))
     if connection.execute(known).first() is None:
