@@ -90,6 +90,8 @@ def _check_record(study: Study, event: Event, file: str) -> None:
     times = event.data.get("times", [])
     if not isinstance(times, list) or not all(type(each) in (int, float) and math.isfinite(each) for each in times):
         raise _wrong(event, "its times of decisions are none", file)
+    if type(event.data.get("opened", 1)) is not int:
+        raise _wrong(event, "its page was opened no number of times", file)
     if record is not None and not record.metrics.keys() >= _METRICS:
         raise _wrong(event, "its record has no metrics", file)
     if record is None or record.task != tasks_of(study)[event.data["item"]].id:

@@ -3,7 +3,6 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from hearth.analysis.episode_figure import ticks_of
 from hearth.challenges.episodes import Known
 from hearth.challenges.tasks import Task
 from hearth.homes.library import load_graph
@@ -12,7 +11,6 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import EnvironmentGraph
 from hearth.schemas.optional_libraries import library
-from hearth.schemas.program import Program
 from hearth.simulation.engine import Execution
 from hearth.simulation.world.home import Home
 from hearth.storage.files import write_json
@@ -21,6 +19,7 @@ from hearth.studies.films_to_judge import JudgedFilm
 from hearth.studies.programs_to_judge import execution_in, program_of
 from hearth.studies.study import FILM, REPLAY
 from hearth.studies.study_trials import record_of
+from hearth.studies.trial_timeline import replayed
 
 SIZE, RATE = (320, 240), 5.0
 """Width and height in pixels, and pictures a second."""
@@ -105,22 +104,9 @@ def _record(job: Shoot, place: EnvironmentGraph, known: Knowledge, path: Path) -
 
 def _execution(job: Shoot, knowledge: Knowledge) -> Execution:
     if job.task is not None:
-        return _episode(job, knowledge)
+        return replayed(job.task, record_of(job.film.content), knowledge, job.film.about)
     home = Home.from_graph(load_graph(job.film.home, knowledge), job.film.home, knowledge)
     found = execution_in(program_of(job.film), home, job.seed)
     if found is None:
         raise HearthError.of(Code.NOT_RENDERED, f"the program of film {job.film.name} does not run")
     return found
-
-
-def _episode(job: Shoot, knowledge: Knowledge) -> Execution:
-    """Return an episode as the execution of a program: failed attempts are left out."""
-    assert job.task is not None
-    start, ticks = ticks_of(job.task, record_of(job.film.content), knowledge)
-    steps, worlds = [], [start]
-    for tick in ticks:
-        done = [step for agent, step in sorted(tick.instructions.items()) if agent not in tick.failures]
-        if done:
-            steps += [replace(step, joins=place > 0) for place, step in enumerate(done)]
-            worlds.append(tick.world)
-    return Execution(Program(title=job.film.about, steps=tuple(steps)), tuple(worlds))

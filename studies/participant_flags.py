@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -19,6 +20,8 @@ FLAGS: Mapping[str, str] = {
     "same": "every rating has the same value",
     "repeated": "the same words were written several times",
     "gibberish": "words that are none",
+    "long": "an answer is so long that it may be pasted",
+    "reopened": "the page of a task was opened again and again: by reloading, going back, or in other tabs",
     "twice": "somebody of the same id at the platform takes part as well",
 }
 """The flags, with their meanings."""
@@ -32,8 +35,18 @@ FEWEST_TICKS = 10
 FEWEST_RATINGS = 4
 """Ratings below which it is no sign that all are the same."""
 
+MOST_CHARACTERS = 1_500
+"""Characters of an answer that somebody may have typed."""
+
+MOST_OPENINGS = 3
+"""Times that the page of a task is opened by a person who comes back to it now and then."""
+
 FEWEST_VOWELS = 0.15
 """Share of vowels in the letters of words, of any language that is written in Latin letters."""
+
+
+FEWEST_LETTERS = 10
+"""Letters below which the share says nothing, as in "Watch TV"."""
 
 
 def flags(study: Study, standing: Standing, others: Sequence[str] = ()) -> tuple[str, ...]:
@@ -63,6 +76,8 @@ def _trials(study: Study, events: Sequence[Event]) -> Iterator[str]:
             continue
         if event.data["seconds"] < study.limits.least_seconds:
             yield "fast"
+        if event.data.get("opened", 1) > MOST_OPENINGS:
+            yield "reopened"
         record = event.data.get("record")
         if record is None:
             continue
@@ -91,6 +106,8 @@ def _answers(study: Study, events: Sequence[Event]) -> Iterator[str]:
                 texts[answer.strip().casefold()] += 1
                 if is_gibberish(answer):
                     yield "gibberish"
+                if len(answer) > MOST_CHARACTERS:
+                    yield "long"
     if len(ratings) >= FEWEST_RATINGS and len(set(ratings)) == 1:
         yield "same"
     if any(count > 1 and len(text) >= 12 for text, count in texts.items()):
@@ -98,10 +115,13 @@ def _answers(study: Study, events: Sequence[Event]) -> Iterator[str]:
 
 
 def is_gibberish(text: Any) -> bool:
-    """Return whether a text of Latin letters is no words: one word again and again, or letters without vowels."""
+    """Return whether a text is no words: pictures alone, or in Latin letters one word again and again, or no vowels."""
+    if not any(map(str.isalnum, str(text))) and any(unicodedata.category(each) == "So" for each in str(text)):
+        return True
     words = re.findall(r"[a-z']+", str(text).casefold())
     letters = "".join(words).replace("'", "")
     if len(letters) < 5 or len(letters) < 0.5 * len(re.sub(r"\s", "", str(text))):
         return False
     vowels = sum(each in "aeiouy" for each in letters)
-    return (len(words) >= 3 and len(set(words)) == 1) or vowels < FEWEST_VOWELS * len(letters)
+    mute = len(letters) >= FEWEST_LETTERS and vowels < FEWEST_VOWELS * len(letters)
+    return mute or (len(words) >= 3 and len(set(words)) == 1)

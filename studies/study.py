@@ -73,6 +73,9 @@ class Question:
         return "" if isinstance(answer, str) and len(answer) <= MOST_TEXT else f"at most {MOST_TEXT:,} characters"
 
 
+LANGUAGES = ("en", "de", "qps-plocm")
+"""The languages of participants' pages; the last is for trying (see `hearth.web.phrases`)."""
+
 MOST_TEXT = 4_000
 """Characters of an answer in words."""
 
@@ -188,6 +191,7 @@ class Study:
         exit: at the end.
         text: the file.
         recruitment: the platform by which its people come; None for none.
+        language: of its pages, one of `LANGUAGES`; "" for that of each person's browser.
     """
 
     name: str
@@ -211,6 +215,7 @@ class Study:
     exit: tuple[Question, ...]
     text: str
     recruitment: Recruitment | None = None
+    language: str = ""
 
     @cached_property
     def digest(self) -> str:

@@ -26,6 +26,7 @@ from hearth.studies.study import (
     EPISODES,
     FILM,
     JUDGE,
+    LANGUAGES,
     PLAY,
     PROGRAMS,
     ROOMS,
@@ -73,7 +74,7 @@ STUDY_KEYS: dict[str, ReadValue] = {
     "people": whole(1, MOST_PEOPLE), "tutorial": list, "practice": whole(0, 10), "tasks": _mapping, "films": _mapping,
     "interface": one_of("symbolic", "visual"), "conditions": list, "repeats": whole(1, 1000),
     "at_least": whole(0, 1000), "limits": _mapping, "alone": name, "questions": list, "exit": list,
-    "recruitment": _mapping,
+    "recruitment": _mapping, "language": one_of(*LANGUAGES),
 }  # fmt: skip
 NEEDED = ("name", "title", "room", "seed", "people", "consent", "conditions")
 
@@ -156,6 +157,7 @@ def _study(top: dict[str, Any], tree: Any, faults: Faults, content: str) -> Stud
         tuple(Page(**page) for page in pages), top.get("practice", 0), tasks, films, top.get("interface", "symbolic"),
         tuple(conditions), top.get("repeats", 1), top.get("at_least", 0), Limits(**limits), top.get("alone", ""),
         tuple(questions), tuple(at_end), content, None if recruited is None else Recruitment(**recruited),
+        top.get("language", ""),
     )  # fmt: skip
 
 

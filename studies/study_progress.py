@@ -173,7 +173,7 @@ class Conduct:
         return self._go_on(person, PRACTICE, "practised", {})
 
     def played(
-        self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = ()
+        self, person: str, record: Mapping[str, Any], seconds: float = 0.0, times: Sequence[float] = (), opened: int = 1
     ) -> Standing:
         """Record that a person has played a trial.
 
@@ -182,6 +182,7 @@ class Conduct:
             record: all actions, as `result_files.episode_data` writes them; they are replayed here.
             seconds: that it took.
             times: when the person decided in each tick, in seconds since it was begun; none where that is not known.
+            opened: how often its page was opened.
 
         Raises:
             HearthError: BAD_ARGUMENT: something else is to come; those of `trials.checked`.
@@ -189,7 +190,9 @@ class Conduct:
         standing = self._expected(person, TRIAL)
         planned = self.trial(standing)
         data = checked(self.study, planned, record, self.known())
-        kept = {"times": list(times)} if times else {}
+        kept: dict[str, Any] = {"times": list(times)} if times else {}
+        if opened != 1:
+            kept["opened"] = opened
         return self._append(standing, "did", {**_named(planned), "seconds": seconds, **kept, "record": data})
 
     def watched(self, person: str, seconds: float = 0.0) -> Standing:

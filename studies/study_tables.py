@@ -14,12 +14,14 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.tables import comment_of, schema_of
+from hearth.storage.files import write_bytes
 from hearth.storage.names import inside
 from hearth.storage.partitions import write_table
 from hearth.studies import study_rows
 from hearth.studies.events import Event
 from hearth.studies.films_to_judge import JudgedFilm, read_films
 from hearth.studies.participant_flags import came, flags
+from hearth.studies.study_codebook import codebook
 from hearth.studies.study_folder import FILMS, Collected
 from hearth.studies.study_progress import DONE, LEFT, Standing
 from hearth.studies.study_trials import record_of, tasks_of
@@ -40,12 +42,13 @@ TABLES: dict[str, pa.Schema] = {
 
 
 def export(collected: Collected, folder: Path) -> dict[str, int]:
-    """Write the tables as Parquet into a folder; the number of rows of each."""
+    """Write the tables as Parquet into a folder, with their codebook; the number of rows of each."""
     folder.mkdir(parents=True, exist_ok=True)
     counts = {}
     for name, table in tables(collected).items():
         write_table(inside(folder, f"{name}.parquet"), table)
         counts[name] = table.num_rows
+    write_bytes(inside(folder, "codebook.csv"), codebook(collected.study, TABLES))
     return counts
 
 
@@ -59,6 +62,7 @@ def archive(collected: Collected) -> bytes:
             file.writestr(zipfile.ZipInfo(f"{name}.parquet"), written.getvalue())
         file.writestr(zipfile.ZipInfo("study.yaml"), collected.study.text)
         file.writestr(zipfile.ZipInfo("columns.txt"), columns_in_words())
+        file.writestr(zipfile.ZipInfo("codebook.csv"), codebook(collected.study, TABLES))
     return packed.getvalue()
 
 

@@ -27,9 +27,10 @@ from hearth.schemas.failures import Code
 from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
+from hearth.web.languages import speak_to
 from hearth.web.limits import MOST_FIELDS, Rate, usual_rates
 from hearth.web.person_socket import Link, nobody
-from hearth.web.phrases import refused, say
+from hearth.web.phrases import direction, language, refused, room_title, say_in_page
 from hearth.web.request_body import body_of
 from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
@@ -125,7 +126,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.globals["say"], made.globals["refused"] = say, refused
+    made.globals.update(say=say_in_page, refused=refused, room_title=room_title, language=language, direction=direction)
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made
@@ -146,6 +147,7 @@ def _endpoint(web: Web, address: Address) -> Callable[[Request], Any]:
 
     async def endpoint(request: Request) -> Response:
         deadlines.begin()
+        speak_to(web, request)
         # By session, for many people may have one address; a token that is made up is none.
         session = await in_thread(sessions.find, web.store, token_of(request))
         sender = session.id if session else sender_of(request)
@@ -207,6 +209,7 @@ def _is_researcher(web: Web, request: Request) -> bool:
 
 async def _connect(web: Web, address: Address, socket: WebSocket) -> None:
     deadlines.begin(deadlines.OPENS)
+    speak_to(web, socket)
     try:
         session = await in_thread(sessions.find, web.store, token_of(socket))
     except HearthError as error:

@@ -6,7 +6,7 @@ from starlette.responses import Response
 
 from hearth.schemas.failures import Code
 from hearth.web import desk_access, sessions
-from hearth.web.phrases import script
+from hearth.web.phrases import language, script
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.security import own_address, scheme_of
@@ -92,7 +92,7 @@ def _privacy(visit: Visit) -> Response:
 
 def _phrases(visit: Visit) -> Response:
     """Return the sentences that scripts say."""
-    return Response(script(), media_type="text/javascript")
+    return Response(script(language()), media_type="text/javascript")
 
 
 def _door(visit: Visit) -> Response:

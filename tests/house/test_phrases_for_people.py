@@ -15,7 +15,9 @@ WEB = Path(__file__).resolve().parents[2] / "web"
 FOR_RESEARCHERS = {
     "desk.html": "the desk", "desk_door.html": "the desk's door", "annotate/desk.html": "the desk",
     "annotate/invitation.html": "the desk", "play/desk.html": "the desk", "study/desk.html": "the desk",
-    "study/desk_none.html": "the desk", "study/none.html": "shown where a server was started for no study",
+    "study/desk_none.html": "the desk",
+    "study/trial.html": "the desk", "annotate/item.html": "the desk",
+    "study/none.html": "shown where a server was started for no study",
     "fault_facts.html": "shown at the desk alone", "start.html": "names what a server lacks, and how it is fetched",
 }  # fmt: skip
 """Templates that researchers read, with the reason."""

@@ -46,6 +46,8 @@ def test_a_careful_person_has_no_flag():
         ("nothing", [None] * 3, 60.0, {}), ("idle", [None] * 56 + ["Turnleft"] * 4, 60.0, {}),
         ("gibberish", ["Turnleft"], 60.0, {"why": "asdf asdf asdf"}),
         ("gibberish", ["Turnleft"], 60.0, {"why": "sdfgh jklm qwrtz"}),
+        ("gibberish", ["Turnleft"], 60.0, {"why": "😀 👍👍"}),
+        ("long", ["Turnleft"], 60.0, {"why": "It was the best of times, it was the worst of times. " * 30}),
     ],
 )  # fmt: skip
 def test_each_sign_is_found(flag, acts, seconds, answers):
@@ -57,11 +59,21 @@ def test_signs_over_several_trials():
     assert found(*[(["Turnleft"], 60.0, {"why": "It was very helpful."})] * 2) == ("repeated",)
     assert found(CAREFUL, came={"person": "p1", "PROLIFIC_PID": "p1"}, others=["p2", "p1"]) == ("twice",)
     assert found(CAREFUL, came={"person": "p1"}, others=["p2"]) == ()
-    assert set(FLAGS) == {"attention", "fast", "nothing", "idle", "same", "repeated", "gibberish", "twice"}
+    signs = {"attention", "fast", "nothing", "idle", "same", "repeated", "gibberish", "long", "reopened", "twice"}
+    assert set(FLAGS) == signs
+
+
+@pytest.mark.parametrize(("opened", "expected"), [(1, ()), (3, ()), (4, ("reopened",))])
+def test_a_page_that_is_opened_again_and_again_is_a_sign(opened, expected):
+    person = standing(CAREFUL)
+    did = next(each for each in person.events if each.kind == "did")
+    did.data["opened"] = opened
+    assert flags(study_of(CHECKED, "s.yaml"), person) == expected
 
 
 @pytest.mark.parametrize(
-    "text", ["", "ok", "No.", "Sehr gut, danke!", "すごく良かった", "не знаю", "12345", "I like it :-)"]
+    "text",
+    ["", "ok", "No.", "Watch TV", "Sehr gut", "すごく良かった", "не знаю", "12345", "It is ok :-)", "Good 👍", "–"],
 )
 def test_short_and_foreign_words_are_no_gibberish(text):
     assert not is_gibberish(text)

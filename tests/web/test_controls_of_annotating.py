@@ -200,6 +200,36 @@ def test_a_program_is_reviewed_marked_and_graded(page, served):
     assert author is page.context
 
 
+def test_the_steps_of_a_task_lead_to_one_another(page, served):
+    page.goto(f"{served.address}/annotate/describe")
+    describe(page)
+    page.goto(f"{served.address}/annotate/tasks")
+    to_composer(page)
+    task = page.url.removesuffix("/compose")
+    for start in ("compose", "scene"):
+        for name in ("1. Task list", "2. Read", "3. Set the scene", "4. Write the program"):
+            page.goto(f"{task}/{start}")
+            go(page, link(page, name))
+
+
+def test_the_desk_reads_and_erases_a_program(page, served):
+    handed_in(page, served)
+    assert "Thank you: your program is handed in" in page.inner_text("main")
+    page.goto(f"{served.address}/annotate/describe")
+    describe(page, "Have another look at the television")
+    page.goto(f"{served.address}/annotate/tasks?thanks=yes")
+    go(page, page.get_by_role("link", name="Go on with"))
+    page.goto(served.desk)
+    page.goto(f"{served.address}/desk/annotate/")
+    press(page, "summary")
+    assert go(page, page.locator("tbody a").first) == TITLE
+    seen(page)
+    go(page, link(page, "Desk: Annotate"))
+    go(page, page.locator("tbody a").first)
+    go(page, button(page, "Erase this program"))
+    assert "Nobody has handed in a program" in page.inner_text("main")
+
+
 def test_an_accepted_program_is_marked_and_graded(page, served):
     handed_in(page, served)
     page.context.clear_cookies()
@@ -238,6 +268,8 @@ def test_a_failed_test_is_tried_again(page, served):
         go(page, button(page, "Hand in the answers"))
         if not link(page, "Try again").count():
             break
+        go(page, link(page, "tutorial"))
+        page.go_back()
         go(page, link(page, "Try again"))
     go(page, link(page, "Annotate")) if link(page, "Annotate").count() else None
 

@@ -223,6 +223,61 @@ def test_one_who_was_invited_joins(page, served):
     inviting.context.close()
 
 
+def wait_for_somebody(page):
+    assert go(page, page.get_by_role("link", name="Wait for somebody")) == "Play with somebody"
+    page.locator("#waited", has_text="You have waited for 0:").wait_for()
+
+
+def test_two_strangers_are_paired_and_one_of_them_leaves(page, served):
+    wait_for_somebody(page)
+    assert page.locator("#nobody").is_hidden() and fits(page) and accessibility(page) == []
+    other = page.context.browser.new_context().new_page()
+    other.goto(f"{served.address}/play/pair")
+    other.get_by_role("button", name="Begin").click()
+    for each in (page, other):
+        each.wait_for_selector("#game[data-tick]", timeout=60_000)
+    page.locator("#banner", has_text="The other person is here").wait_for()
+    press(page, '[data-move="Turnleft"]')
+    page.locator("#said", has_text="Waiting for the other person").wait_for()
+    other.locator("#said", has_text="It is your turn").wait_for()
+    other.click('[data-move="Turnright"]')
+    after(page, 1)
+    other.context.close()
+    page.locator("#banner", has_text="The other person has left. You can go on").wait_for()
+    for name in ("Turnleft", "Turnright", ""):
+        move(page, name)
+
+
+def test_who_is_paired_with_nobody_waits_for_somebody_else(page, served):
+    """The other was paired, and has closed the page before the game was open."""
+    other = page.context.browser.new_context().new_page()
+    other.goto(f"{served.address}/play/")
+    other.get_by_role("button", name="Begin").click()
+    other.evaluate("fetch('/play/pair/look', {method: 'POST'})")
+    wait_or_play = page.get_by_role("link", name="Wait for somebody")
+    press(page, wait_or_play)
+    page.wait_for_selector("#game[data-tick]", timeout=60_000)
+    other.context.close()
+    assert go(page, page.locator("#banner").get_by_role("link", name="Wait for somebody else")) == "Play with somebody"
+
+
+def test_a_helper_stands_in_when_nobody_comes(page):
+    def hurried(route):
+        answer = route.fetch()
+        found = answer.json()
+        route.fulfill(json={**found, "patience": 2})
+
+    page.route("**/play/pair/look", hurried)
+    wait_for_somebody(page)
+    page.locator("#nobody", has_text="Nobody has come yet").wait_for()
+    assert go(page, page.get_by_role("button", name="Stop waiting")) == "Play"
+    wait_for_somebody(page)
+    go(page, page.get_by_role("button", name="Begin with a helper"))
+    page.wait_for_selector("#game[data-tick]")
+    assert "Somebody helps" in page.inner_text("#clock")
+    move(page, "Turnleft")
+
+
 def test_the_older_tab_takes_over(page):
     begin(page)
     other = page.context.new_page()

@@ -7,7 +7,8 @@ from web.test_study_room import at_trial, finish, judging, ledger_of, playing  #
 
 from hearth.studies.study import JUDGE, PLAY
 from hearth.studies.study_progress import STAGES
-from hearth.web.study.expected_posts import FIRST, TRIALS, TURNS
+from hearth.web.phrases import phrases
+from hearth.web.study.expected_posts import TURNS
 from hearth.web.study.study_store import StoreLedger
 
 BROWSER = {"accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
@@ -111,7 +112,8 @@ def test_the_form_of_a_film_that_is_sent_twice_does_not_judge_the_next(judging):
 
 
 def test_every_stage_has_its_line_and_every_post_its_stages():
-    assert set(FIRST) == set(STAGES) - {"trial"} and TRIALS.keys() == {PLAY, JUDGE} == TURNS.keys()
+    notes = {name.removeprefix("first_") for name in phrases()["study"] if name.startswith("first_")}
+    assert notes == set(STAGES) - {"trial"} | {PLAY, JUDGE} and TURNS.keys() == {PLAY, JUDGE}
     assert all(set(stages) <= set(STAGES) for posts in TURNS.values() for stages in posts.values())
 
 

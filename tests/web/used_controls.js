@@ -1,15 +1,16 @@
 // Put into every page of a test: reports each control that the page shows, each that somebody uses, and each button
 // that was pressed and changed nothing.
 (() => {
-  const CONTROLS = "a[href], button, input:not([type=hidden]), select, textarea, summary, video[controls], [role=application], #plan .piece, #plan .room, #plan .door";
+  const CONTROLS = "a[href], button, input:not([type=hidden]), select, textarea, summary, video[controls], [role=application][id], #game #plan .piece, #game #plan .room, #game #plan .door";
   const PATIENCE = 4_000; // milliseconds within which a button must have changed something
   const folded = (path) => path.split("?")[0].split("/").map((part) => (/\d/.test(part) || part.length > 20 ? "*" : part)).join("/");
-  const words = (text) => text.replace(/[0-9a-f]{12,}|\d+/g, "*").replace(/\s+/g, " ").trim().slice(0, 60);
+  const words = (text) => text.replace(/[▴▾]/g, "").replace(/[0-9a-f]{12,}|\d+/g, "*").replace(/\s+/g, " ").trim().slice(0, 60);
 
   function named(control) {
     const { localName: tag, dataset } = control;
     if (control.closest("#plan")) return `plan ${control.classList[0]}`;
     if (control.matches("button.thing")) return "button thing";
+    if (control.matches("button.play")) return "button play or pause";
     if (dataset.instruction) return `button ${dataset.instruction.split(" ")[0]}`;
     if (dataset.move !== undefined) return `button ${dataset.move || "Wait"}`;
     if (tag === "a") return `a ${folded(control.getAttribute("href").replace(location.origin, ""))}`;
@@ -22,7 +23,8 @@
 
   function told(control) {
     const inHead = control.matches("a.skip") || control.closest("header.top");
-    const page = folded(location.pathname).replace(/\/new$/, "/"); // a form that was refused is shown again
+    const page = folded(location.pathname).replace(/\/new$/, "/") // a form that was refused is shown again
+      .replace("/review/*/mend", "/task/*/compose"); // the same page, with the program of somebody else
     return { page: inHead ? "every page" : page, control: named(control) };
   }
 

@@ -10,6 +10,7 @@ from hearth.pipelines.checks import free_text_steps
 from hearth.schemas.failures import Code
 from hearth.web.annotate import collected_files, withdrawal
 from hearth.web.annotate.annotate_tables import DRAFT, MARKS, PROGRAMS, REVIEWS, TEXTS
+from hearth.web.annotate.desk_queue import SIGNS, queue
 from hearth.web.annotate.program_draft import SPECIAL, stored
 from hearth.web.room_request import Visit
 from hearth.web.store import Store
@@ -22,7 +23,8 @@ def overview(visit: Visit) -> Response:
     """Counts, the texts of special blocks, and the files."""
     store = visit.web.store
     files = [name for name, data in collected_files.collected(store).items() if data]
-    values: dict[str, Any] = {"counts": counts(store), "specials": special_texts(store), "files": [*files, RATINGS]}
+    values: dict[str, Any] = {"counts": counts(store), "specials": special_texts(store), "files": [*files, RATINGS],
+                              "queue": queue(store), "meanings": SIGNS}  # fmt: skip
     return visit.page("annotate/desk.html", **values)
 
 

@@ -9,6 +9,7 @@ from hearth.web.annotate import (
     annotated_programs,
     annotation_marks,
     descriptions,
+    desk_queue,
     program_stage,
     review_stage,
     reviewers,
@@ -17,7 +18,7 @@ from hearth.web.annotate import (
 from hearth.web.annotate.annotate_tables import TEXTS
 from hearth.web.annotate.collected_files import write_collected
 from hearth.web.annotate.qualification import is_qualified, take_test, test_page
-from hearth.web.room import Room, get, post
+from hearth.web.room import Room, Who, get, post
 from hearth.web.room_request import Visit
 
 
@@ -59,7 +60,7 @@ ROOM = Room(
         post("/task/{text}/submit", program_stage.submit),
         get("/plan/{home}", program_stage.plan),
         get("/shapes/{home}", program_stage.shapes),
-        get("/replay.js", program_stage.replay_script),
+        get("/replay.js", program_stage.replay_script, Who.ANYONE),
         get("/test", test_page),
         post("/test", take_test),
         get("/review", review_stage.review_list),
@@ -85,6 +86,7 @@ ROOM = Room(
         get("/", annotate_desk.overview),
         post("/invite", reviewers.invite),
         post("/erase", annotate_desk.erase),
+        get("/item/{program}", desk_queue.item),
         get("/{file}", annotate_desk.download),
     ),
     needs=("blockly",),

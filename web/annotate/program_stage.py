@@ -21,7 +21,16 @@ Run = Callable[[Draft, str, str, Knowledge], dict[str, Any]]
 
 def task_list(visit: Visit) -> Response:
     """Return step one: the descriptions that the person may write a program for."""
-    return visit.page("annotate/tasks.html", tasks=annotated_programs.tasks(visit.web.store, visit.person))
+    tasks, thanks = annotated_programs.tasks(visit.web.store, visit.person), visit.fields.get("thanks") == "yes"
+    following = next((each for each in tasks if not each["state"]), None)
+    return visit.page("annotate/tasks.html", tasks=tasks, thanks=thanks, following=following)
+
+
+def words_of(visit: Visit, text: Row, draft: Draft) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Return the steps of a program in words, each with its faults and notes."""
+    found = check_of(visit, text, draft)
+    steps = [[each for each in found if each["step"] == number] for number in range(len(draft.blocks))]
+    return [(block.words(visit.web.known), some) for block, some in zip(draft.blocks, steps, strict=True)]
 
 
 def read_task(visit: Visit) -> Response:
@@ -128,7 +137,7 @@ def submit(visit: Visit) -> Response:
         return visit.answer({**refused.as_json(), "found": found}, 400)
     version = int_field(message, "version", 1, 10**9)
     annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft, SUBMITTED)
-    return visit.answer({"go": "/annotate/tasks"})
+    return visit.answer({"go": "/annotate/tasks?thanks=yes"})
 
 
 def try_out(visit: Visit) -> Response:

@@ -32,9 +32,7 @@ def review_page(visit: Visit) -> Response:
     """Return a program next to its description."""
     program, text = _waiting(visit)
     draft = stored(program["draft"])
-    found = program_stage.check_of(visit, text, draft)
-    words = [(block.words(visit.web.known), [each for each in found if each["step"] == number])
-             for number, block in enumerate(draft.blocks)]  # fmt: skip
+    words = program_stage.words_of(visit, text, draft)
     return visit.page("annotate/review.html", program=program, text=text, draft=draft, words=words)
 
 

@@ -7,7 +7,7 @@ import sqlalchemy as sql
 
 from hearth.challenges.episodes import Record
 from hearth.kb.knowledge import Knowledge
-from hearth.web.play import game_store, game_withdrawal, play_pages
+from hearth.web.play import game_store, game_withdrawal, play_pages, waiting_room
 from hearth.web.play.live_games import games
 from hearth.web.play.play_socket import live
 from hearth.web.play.play_trials import Trial
@@ -28,6 +28,10 @@ ROOM = Room(
         socket("/game/{game}/live", live),
         get("/join/{code}", play_pages.join_page),
         post("/join/{code}", play_pages.join),
+        get("/pair", waiting_room.pair_page),
+        post("/pair/look", waiting_room.look),
+        post("/pair/stand-in", waiting_room.with_stand_in),
+        post("/pair/stop", waiting_room.stop_waiting),
     ),
     desk=(
         get("", play_pages.desk_page),

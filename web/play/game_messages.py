@@ -13,6 +13,7 @@ from hearth.envs.seen_bans import BANS
 from hearth.homes.geometry import footprint
 from hearth.kb.action_groups import relation_of
 from hearth.schemas.failure_words import sentence
+from hearth.schemas.failures import Failure
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
@@ -27,7 +28,7 @@ from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
-from hearth.web.phrases import say
+from hearth.web.phrases import ENGLISH, language, phrases, say, thing_name
 from hearth.web.play.games import Game
 from hearth.web.play.player_memory import Counted
 
@@ -163,9 +164,13 @@ def _thing(home: Home, node_id: int) -> list[Any]:
     return [node.class_name, thing_group(node), _rect(node), called(home)[i]]
 
 
-@lru_cache(maxsize=64)
 def called(home: Home) -> tuple[str, ...]:
-    """Return what people call each thing of a home: `mug 2` where there are several mugs."""
+    """Return what people call each thing of a home, in their language: `mug 2` where there are several mugs."""
+    return _all_called(home, language())
+
+
+@lru_cache(maxsize=64)
+def _all_called(home: Home, _: str) -> tuple[str, ...]:
     names = [_called(home, i) for i in range(len(home.ids))]
     places: dict[str, list[int]] = {}
     for i in indices(home.everything):
@@ -180,8 +185,8 @@ def called(home: Home) -> tuple[str, ...]:
 def _called(home: Home, i: int) -> str:
     if home.characters >> i & 1:
         return say("play", "person")
-    name = label(home.classes[i])
-    between = [label(home.classes[room]) for room in indices(home.between[i] & home.rooms)]
+    name = thing_name(label(home.classes[i]))
+    between = [thing_name(label(home.classes[room])) for room in indices(home.between[i] & home.rooms)]
     return say("play", "door", door=name, one=between[0], other=between[1]) if len(between) == 2 else name
 
 
@@ -193,7 +198,7 @@ def _rect(node: Node) -> list[float] | None:
 
 
 def floor_plan(home: Home) -> list[list[Any]]:
-    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id.
+    """Rooms, walls, doors and windows, which never move: kind, class, rectangle (x0, z0, x1, z1 in metres), id, name.
 
     What surrounds a door is a `frame`: nothing can be done with it.
     """
@@ -201,10 +206,8 @@ def floor_plan(home: Home) -> list[list[Any]]:
     nodes = [home.node(i) for i in range(len(home.ids)) if not home.absent >> i & 1]
     order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
     frames = {node.id for node in order if node.category == "Doors" and "CAN_OPEN" not in node.properties}
-    return [
-        ["frame" if node.id in frames else kinds[node.category], node.class_name, _rect(node), node.id]
-        for node in order
-    ]
+    rows = [(node, "frame" if node.id in frames else kinds[node.category]) for node in order]
+    return [[kind, node.class_name, _rect(node), node.id, thing_name(label(node.class_name))] for node, kind in rows]
 
 
 PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}
@@ -257,8 +260,16 @@ def _last(last: LastAction, view: View) -> dict[str, Any]:
     """Return the last act, and in words for people why it failed, if it did."""
     found = last_json(last, view)
     if last.failure is not None:
-        found["failure"]["words"] = sentence(seen_failure(last.failure, view), code=False)
+        found["failure"]["words"] = _why(seen_failure(last.failure, view))
     return found
+
+
+def _why(failure: Failure) -> str:
+    """Return why an act failed; in other languages than English by its code alone."""
+    if language() == ENGLISH:
+        return sentence(failure, code=False)
+    known = phrases(language())["failed"]
+    return known.get(str(failure.code), known["other"])
 
 
 def _point(pose: Pose) -> list[float]:
@@ -310,8 +321,8 @@ def goal_words(literal: Any, home: Home) -> str:
         return instruction(Goal.of(literal), home.knowledge, terse=True)
     names = [_name(term, home) for term in literal.terms]
     if agent:
-        return f"{'Hold' if literal.name == HOLDS else 'Sit on'} {names[1]}"
-    return f"Put {names[0]} {'in' if literal.name == 'INSIDE' else 'on'} {names[1]}"
+        return say("verbs", "Hold" if literal.name == HOLDS else "SitOn", thing=names[1])
+    return say("verbs", "PutIn" if literal.name == "INSIDE" else "PutBack", thing=names[0], place=names[1])
 
 
 def _name(term: Any, home: Home) -> str:
@@ -320,4 +331,4 @@ def _name(term: Any, home: Home) -> str:
     else:
         found = home.instances(term) if term.partition(":")[0] != AGENT else 0
         name = home.classes[lowest(found)] if found else term
-    return label(name)
+    return thing_name(label(name))

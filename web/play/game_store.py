@@ -10,7 +10,7 @@ import orjson
 import sqlalchemy as sql
 
 from hearth.schemas.failures import Code
-from hearth.web.play.game_tables import DECISIONS, GAMES, SEATS
+from hearth.web.play.game_tables import DECISIONS, GAMES, OPENINGS, SEATS
 from hearth.web.play.play_trials import PERSON, Trial, read_trial
 from hearth.web.sessions import check_tab
 from hearth.web.store import Store
@@ -91,8 +91,13 @@ def join(connection: sql.Connection, session: str, code: str) -> str:
     if session not in seats:
         if len(seats) > 1:
             raise WebError(Code.LOCKED, "code", "a free seat", "somebody else has it")
-        connection.execute(sql.insert(SEATS).values(game=found.id, agent=1, session=session))
+        take_second_seat(connection, str(found.id), session)
     return str(found.id)
+
+
+def take_second_seat(connection: sql.Connection, game: str, session: str) -> None:
+    """Let a session play the second character of a game, within a transaction."""
+    connection.execute(sql.insert(SEATS).values(game=game, agent=1, session=session))
 
 
 def seat(connection: sql.Connection, game: str, session: str) -> int:
@@ -130,6 +135,31 @@ def played_before(connection: sql.Connection, task: str) -> int:
     """Return how many games of a task there are."""
     query = sql.select(sql.func.count()).select_from(GAMES).where(GAMES.c.task == task)
     return int(connection.execute(query).scalar_one())
+
+
+def keep_opening(connection: sql.Connection, game: str, agent: int, tab: str) -> None:
+    """Keep that a person opened the page of a game, within a transaction; a tab that comes back is counted once."""
+    row = {"game": game, "agent": agent, "tab": tab}
+    known = sql.select(OPENINGS.c.tab).where(*(OPENINGS.c[name] == value for name, value in row.items()))
+    if connection.execute(known).first() is None:
+        connection.execute(sql.insert(OPENINGS).values(**row))
+
+
+def openings(connection: sql.Connection, game: str, agent: int = 0) -> int:
+    """Return how often a person opened the page of a game."""
+    query = sql.select(sql.func.count()).select_from(OPENINGS)
+    return int(connection.execute(query.where(OPENINGS.c.game == game, OPENINGS.c.agent == agent)).scalar_one())
+
+
+def games_begun(connection: sql.Connection) -> int:
+    """Return how many games there are."""
+    return int(connection.execute(sql.select(sql.func.count()).select_from(GAMES)).scalar_one())
+
+
+def is_full(connection: sql.Connection, game: str) -> bool:
+    """Return whether somebody has the second seat of a game."""
+    query = sql.select(SEATS.c.session).where(SEATS.c.game == game, SEATS.c.agent == 1)
+    return connection.execute(query).first() is not None
 
 
 def all_games(connection: sql.Connection) -> list[Stored]:

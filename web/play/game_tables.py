@@ -55,3 +55,23 @@ SIGNS = sql.Table(
     sql.Column("at", sql.Float, nullable=False, comment="seconds since 1970, UTC, when its page was open last"),
 )
 """The people of games for two who are present."""
+
+OPENINGS = sql.Table(
+    "play_openings",
+    METADATA,
+    _game(),
+    sql.Column("agent", sql.Integer, primary_key=True, comment="the character"),
+    sql.Column("tab", sql.Text, primary_key=True, comment="random, another each time that the page is opened"),
+)
+"""The times that each person opened the page of a game: a reload and another tab are further ones."""
+
+WAITING = sql.Table(
+    "play_waiting",
+    METADATA,
+    owner(),
+    sql.Column("since", sql.Float, nullable=False, comment="seconds since 1970, UTC, when the person came"),
+    sql.Column("at", sql.Float, nullable=False, comment="the same, when its page was open last"),
+    sql.Column("game", sql.Text, nullable=False, comment="in which the person was paired; empty until then"),
+    sql.PrimaryKeyConstraint("session"),
+)
+"""The people in the waiting room, who are to be paired."""

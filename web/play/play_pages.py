@@ -18,13 +18,14 @@ from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.goals import Goal
 from hearth.schemas.optional_libraries import library
+from hearth.web.phrases import say, thing_name
 from hearth.web.play import game_store
 from hearth.web.play.game_messages import goal_words, part_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import games
-from hearth.web.play.play_trials import INTERFACES, Trial, drawable, helpers, offered, published, trial
+from hearth.web.play.play_trials import INTERFACES, Trial, drawable, offered, published, trial
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.third_party_scripts import missing
 from hearth.web.web_errors import WebError
@@ -84,7 +85,7 @@ def _line(each: Stored) -> dict[str, Any]:
     return {
         "id": each.id,
         "title": f"{each.trial.title}, in {home_words(each.trial.task.home)}",
-        "helper": helpers().get(each.trial.helper, ""),
+        "helper": say("helpers", each.trial.helper),
         "state": state,
     }
 
@@ -138,7 +139,7 @@ def game_page(visit: Visit) -> Response:
         "play/game.html",
         game=live.stored.id,
         interface=game.trial.interface,
-        title=game.trial.title,
+        title=", ".join(map(thing_name, game.trial.title.split(", "))),
         instruction=game.trial.instruction if number == 0 else "",
         goal=goal if number == 0 else [],
         two=len(game.trial.people) > 1,

@@ -15,6 +15,7 @@ from hearth.web.handler_threads import in_thread
 from hearth.web.messages import int_field, text_field
 from hearth.web.person_socket import Link
 from hearth.web.play.game_messages import Telling
+from hearth.web.play.game_store import is_full, keep_opening
 from hearth.web.play.live_games import LiveGame, games
 from hearth.web.play.play_trials import PERSON, PROGRAM, SIZE
 from hearth.web.play.player_presence import SIGN_EVERY, give_sign
@@ -63,7 +64,7 @@ class Page:
         if kind == "hello":
             self.tab = text_field(message, "tab", 60)
             if message.get("again") is not True:  # a page that comes back does not take the session from a newer one
-                await in_thread(sessions.take_tab, self.link.web.store, self.link.session.id, self.tab)
+                await in_thread(self._open)
             async with self._sending:
                 await self.link.send(await in_thread(self._begin))
         elif kind == "act":
@@ -82,6 +83,12 @@ class Page:
             return
         x, y = (int_field(message, name, 0, size - 1) for name, size in zip("xy", SIZE, strict=True))
         await self.link.send({"type": "picked", "id": await in_thread(self._pick, x, y)})
+
+    def _open(self) -> None:
+        """Make this page's tab the one that may act, and keep that the page was opened."""
+        sessions.take_tab(self.link.web.store, self.link.session.id, self.tab)
+        where = self.live.stored.id, self.number, self.tab
+        self.link.web.store.write(lambda connection: keep_opening(connection, *where))
 
     def _begin(self) -> dict[str, Any]:
         with self.live.lock:
@@ -124,8 +131,11 @@ class Page:
             return self._drawn().pick(x, y)
 
     def _code(self) -> str:
-        """Return the code that the first of two people gives the second."""
-        return self.live.stored.code if self.live.game.trial.helper == PERSON and self.number == 0 else ""
+        """Return the code that the first of two people gives the second; "" once somebody has the second seat."""
+        if self.live.game.trial.helper != PERSON or self.number != 0:
+            return ""
+        taken = self.link.web.store.read(lambda connection: is_full(connection, self.live.stored.id))
+        return "" if taken else self.live.stored.code
 
     def _act(self, tick: int, text: str | None) -> dict[str, Any] | None:
         with self.live.lock:

@@ -1,7 +1,7 @@
 """Rooms 3 and 4: people take part in a study, doing tasks or judging films, and its researcher's desk."""
 
 from hearth.web.room import Room, get, post
-from hearth.web.study import study_desk, study_pages
+from hearth.web.study import study_desk, study_pages, trial_page
 
 ROOM = Room(
     "study",
@@ -21,6 +21,8 @@ ROOM = Room(
         get("/tables.zip", study_desk.tables),
         get("/report.html", study_desk.report),
         get("/payments.csv", study_desk.payments),
+        get("/trial/{person}/{number}", trial_page.trial),
+        get("/trial/{person}/{number}/replay.json", trial_page.replay),
         post("/forget", study_desk.forget),
         post("/dismiss", study_desk.dismiss),
     ),

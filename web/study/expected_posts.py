@@ -8,7 +8,6 @@ from hearth.studies.study_progress import (
     CONSENT,
     DONE,
     EXIT,
-    LEFT,
     PRACTICE,
     QUESTIONS,
     STAGES,
@@ -16,6 +15,7 @@ from hearth.studies.study_progress import (
     TUTORIAL,
     Standing,
 )  # fmt: skip
+from hearth.web.phrases import say
 from hearth.web.web_errors import WebError
 
 UNASKED = "unasked"
@@ -31,19 +31,6 @@ TURNS: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     JUDGE: {**BOTH, "begin": (), "answer": (TRIAL, QUESTIONS, EXIT)},
 }
 """The stages at which each post is expected, by kind of study."""
-
-FIRST = {
-    CONSENT: "First you are asked whether you take part.",
-    TUTORIAL: "First read how it works.",
-    PRACTICE: "First do the practice.",
-    QUESTIONS: "First answer these questions.",
-    EXIT: "These last questions are what is left to do.",
-    DONE: "You have finished the study.",
-    LEFT: "You have stopped taking part.",
-}
-"""The page's note, by stage; for trials it depends on their task."""
-
-TRIALS = {PLAY: "First do this task: begin it, or go on with it.", JUDGE: "First judge what is shown here."}
 
 
 def in_turn(study: Study, standing: Standing | None, post: str) -> Standing:
@@ -87,5 +74,4 @@ def check_answers(standing: Standing, asked: Collection[str], given: Collection[
 def unasked_line(study: Study, standing: Standing | None) -> str:
     """Return the note of a person's stage about a post that is not expected there."""
     stage = standing.stage if standing else CONSENT
-    comes = TRIALS[study.room] if stage == TRIAL else FIRST[stage]
-    return f"What you sent last is not asked for now, and changed nothing. {comes}"
+    return say("study", "unasked", comes=say("study", f"first_{study.room if stage == TRIAL else stage}"))

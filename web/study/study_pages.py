@@ -130,7 +130,7 @@ def shown(
         return visit.page("study/film.html", status, film=film, questions=study.asked(planned), **values)
     if standing.stage == CONSENT:
         return _consent_page(visit, study, note)
-    helped = standing.stage == TRIAL and conduct.condition(standing).helped
+    helped = standing.stage in (TRIAL, QUESTIONS) and conduct.condition(standing).helped
     questions = conduct.questions(standing)
     return visit.page(TEMPLATES[standing.stage], status, questions=questions, helped=helped, **values)
 
@@ -227,7 +227,8 @@ def answer(visit: Visit) -> Response:
         name, fault = faults[0][0].name, faults[0][1]
         raise WebError(Code.BAD_ARGUMENT, ANSWER + name, fault, str(given[name] or "no answer")[:40])
     if faults:
-        return shown(visit, conduct, standing, "; ".join(f"{each.text} – {fault}" for each, fault in faults), given)
+        lines = [say("study", "answer_fault", question=each.text, fault=fault) for each, fault in faults]
+        return shown(visit, conduct, standing, "; ".join(lines), given)
     if judged:
         since = conduct.clock() - max(each.at for each in standing.events)
         conduct.watched(visit.person, round(since, 1))

@@ -68,9 +68,13 @@ def gone_on(web: Web, conduct: Conduct, standing: Standing) -> Standing:
     if standing.stage == PRACTICE:
         return conduct.practised(standing.person)
     data = {**episode_data(record), "actions": [list(tick) for tick in record.actions]}
-    stored, decided = web.store.read(
-        lambda connection: (game_store.stored(connection, game), game_store.decisions(connection, game))
+    stored, decided, opened = web.store.read(
+        lambda connection: (
+            game_store.stored(connection, game),
+            game_store.decisions(connection, game),
+            game_store.openings(connection, game),
+        )
     )
     ended = (stored.result or {}).get("at") or max((each.at for tick in decided.values() for each in tick), default=0.0)
     times = [round(each.at - stored.created, 2) for tick in decided.values() for each in tick if each.agent == 0]
-    return conduct.played(standing.person, data, round(max(0.0, ended - stored.created), 1), times)
+    return conduct.played(standing.person, data, round(max(0.0, ended - stored.created), 1), times, opened)

@@ -1,8 +1,7 @@
 // The floor plan (panel E): rooms, what is known of furniture, characters with facing, trails and what they hold.
-import { name } from "./words.js";
+import { name, say } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
-const SIDES = ["north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west"];
 
 function made(tag, attributes, text) {
   const node = document.createElementNS(SVG, tag);
@@ -29,18 +28,18 @@ export class FloorPlan {
     for (const layer of ["rooms", "furniture", "walls", "names", "trails", "characters"]) {
       this.layers[layer] = this.svg.appendChild(made("g", { class: layer }));
     }
-    for (const [kind, className, box, id] of state.plan) this.fixed(kind, className, box, id);
+    for (const each of state.plan) this.fixed(...each);
     this.drawn = new Set();
   }
 
-  fixed(kind, className, box, id) {
+  fixed(kind, className, box, id, words) {
     const layer = kind === "room" ? "rooms" : "walls";
     const shape = this.layers[layer].appendChild(made("rect", { ...this.rect(box), class: `${kind} ${className}` }));
     // A finger is taken to mean what can be pressed nearby: walls and windows, of which nothing can be done, are not.
     if (["room", "door"].includes(kind)) shape.addEventListener("click", () => this.choose(id));
     if (kind !== "room") return;
     const [x, y] = [(box[0] + box[2]) / 2, this.high - box[3] + 0.45];
-    this.layers.names.appendChild(made("text", { x, y, class: "room-name" }, className.replaceAll("_", " ")));
+    this.layers.names.appendChild(made("text", { x, y, class: "room-name" }, words));
   }
 
   rect([x0, z0, x1, z1]) {
@@ -77,12 +76,12 @@ export class FloorPlan {
   }
 
   told(state) {
-    const room = (id) => (id ? name(state.things, id) : "no room");
+    const room = (id) => (id ? name(state.things, id) : "–");
+    const sides = say("sides").split(", ");
     const said = state.agents.filter((agent) => agent.place).map((agent) => {
-      const side = SIDES[Math.round(agent.place[2] / 45) % 8];
-      const who = agent.agent === state.me ? "You are" : "The other is";
-      return `${who} in ${room(agent.room)}, facing ${side}.`;
+      const side = sides[Math.round(agent.place[2] / 45) % 8];
+      return say(agent.agent === state.me ? "plan_you" : "plan_other", { room: room(agent.room), side });
     });
-    return `Floor plan. ${said.join(" ")}`;
+    return said.join(" ");
   }
 }

@@ -238,15 +238,16 @@ function why() {
   return say(`end_${ending()}`, { after });
 }
 
+const isStudied = () => !state.go_on.startsWith("/play/"); // whose helper is not to be known
+
 function showEnd() {
   const text = `${why()} `;
-  const studied = !state.go_on.startsWith("/play/"); // whose helper is not to be known
-  const episode = studied ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, say("episode")), " · "];
+  const episode = isStudied() ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, say("episode")), " · "];
   tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, say("go_on")));
 }
 
 function showInvitation() {
-  if (!state.code) return tell("note", say("wait_for"));
+  if (!state.code) return tell("note", `${say("wait_for")} `, ...(isStudied() ? [] : [link("/play/pair", say("wait_again"))]));
   const address = `${location.origin}/play/join/${state.code}`;
   return tell("note", `${say("invite")} `, link(address, address));
 }

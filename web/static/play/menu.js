@@ -1,5 +1,5 @@
 // What one can do with a thing: a panel with a button for each legal instruction about it.
-import { name, say, spoken } from "./words.js";
+import { name, say, spoken, stateWord } from "./words.js";
 
 // Of pieces of floor that nobody can tell apart, the first.
 function distinct(options, state) {
@@ -43,7 +43,7 @@ export class Menu {
   fill(state) {
     const id = this.id; // the menu forgets it when it closes, before it does what was pressed
     const thing = state.things.get(id);
-    const states = (thing.states ?? []).map((each) => each.toLowerCase().replaceAll("_", " ")).join(", ");
+    const states = (thing.states ?? []).map(stateWord).join(", ");
     this.title.textContent = `${name(state.things, id)}${states ? ` (${states})` : ""}`;
     const options = state.over ? [] : distinct(state.about(id), state);
     const buttons = options.map(([action, ids]) => {

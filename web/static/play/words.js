@@ -1,24 +1,21 @@
 // Words for actions and things; sentences come from the one table of them.
 import PHRASES from "/phrases.js";
 
-const VERBS = {
-  Walktowards: "Walk to", Walk: "Walk to", Grab: "Take", Open: "Open", Close: "Close", SwitchOn: "Switch on", SwitchOff: "Switch off",
-  Sit: "Sit down on", StandUp: "Stand up", Turnleft: "Turn left", Turnright: "Turn right", Walkforward: "Walk forward",
-};
-const PUTS = { PutBack: "on", PutIn: "in" };
-
 const filled = (text, values) => text.replace(/\{(\w+)\}/g, (_, key) => values[key] ?? "");
 
 export const say = (name, values = {}) => filled(PHRASES.play[name], values);
 
 export function name(things, id) {
-  return things.get(id)?.words ?? "wall";
+  return things.get(id)?.words ?? PHRASES.verbs.wall;
 }
 
-export function spoken(action, ids, things) {
-  if (action in PUTS) return `Put ${name(things, ids[0])} ${PUTS[action]} ${name(things, ids[1])}`;
-  return [VERBS[action] ?? action, ...ids.map((id) => name(things, id))].join(" ");
-}
+// An act by the names of its things; an action without words of its own stands before them.
+const acted = (action, names) =>
+  action in PHRASES.verbs ? filled(PHRASES.verbs[action], { thing: names[0], place: names[1] }) : [action, ...names].join(" ");
+
+export const spoken = (action, ids, things) => acted(action, ids.map((id) => name(things, id)));
+
+export const stateWord = (state) => PHRASES.states[state] ?? state.toLowerCase().replaceAll("_", " ");
 
 export const written = (action, ids, things) =>
   [`[${action}]`, ...ids.map((id) => `<${things.get(id).className}> (1.${id})`)].join(" ");
@@ -29,8 +26,8 @@ const READ = /<([^>]+)> \((?:\d+\.)?(\d+)\)/g;
 export function retold(instruction, things) {
   const action = /\[(\w+)\]/.exec(instruction)?.[1] ?? "";
   const names = [...instruction.matchAll(READ)].map(([, given, id]) => things.get(Number(id))?.words ?? given.replaceAll("_", " "));
-  if (action in PUTS) return `put ${names[0]} ${PUTS[action]} ${names[1]}`;
-  return [(VERBS[action] ?? action).toLowerCase(), ...names].join(" ");
+  const said = acted(action, names);
+  return PHRASES.language === "en" ? said[0].toLowerCase() + said.slice(1) : said; // in others a noun may come first
 }
 
 // What a refusal means to who plays.
