@@ -14,6 +14,8 @@ from hearth.models.reading.mentions import is_adjective
 from hearth.models.reading.misspelled_words import spelled
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
+from hearth.models.reading.shorthand import written_out
+from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
@@ -33,7 +35,7 @@ SUMMED_UP = 3
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)"
+    r"|, so (?!that\b)|,? and so (?!on\b|that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
 _ALTERNATIVE = re.compile(
@@ -105,15 +107,14 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         world: where it is to be done; None where only classes matter.
     """
     reader = _Text(ClauseReader(Scene(known, world)))
-    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
-    for sentence in _SENTENCES.split(whole):
+    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", written_out(text[:LONGEST])))
+    for sentence in _SENTENCES.split(corrected(whole)):
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
             plain = _NEITHER.sub(r"\1 and \2 \3 not be ", plain)
             reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
-    is_bare = reader.sentences == 1 and reader.found and not reader.unread
-    if is_bare and not any(clause.acts or clause.forbidden for clause in reader.found):
-        reader.sentence(f"bring me {plain_words(text)}")  # `my glasses, please`
+    if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
+        reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
     return reader.reading()
 
 
@@ -128,6 +129,7 @@ class _Text:
         self.tried = 0
         self.sentences = 0
         self.first = 0
+        self.named = ""
 
     def sentence(self, text: str) -> None:
         """Read a sentence; what it says of the order of its acts is kept."""
@@ -168,7 +170,7 @@ class _Text:
         found = _TITLE.fullmatch(text)
         if not found:
             return None
-        stated = self.clauses.stated(found["title"])
+        stated = self.clauses.named(found["title"]) or self.clauses.stated(found["title"])
         read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
             start = _BEGINNING.match(found["title"])
@@ -238,7 +240,9 @@ class _Text:
             return self.clauses.stated(text)
         if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
             return Clause()
-        return self.clauses.named(text)
+        if (named := self.clauses.named(text)) is not None and not self.named:
+            self.named = plain_words(text)
+        return named
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
@@ -306,7 +310,9 @@ def is_aside(text: str) -> bool:
     """Return whether a clause asks for nothing."""
     if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
         return False
-    return text not in TAKEN_BACK and words().asides.fullmatch(text) is not None
+    if text in TAKEN_BACK:
+        return False
+    return any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain_words(text))) if each)
 
 
 def _verb_of(text: str) -> str:

@@ -44,11 +44,16 @@ def _is_room(known: Knowledge, name: str, needs: Collection[str]) -> bool:
 
 
 class Scene:
-    """A home at the start of a request, or none: things by mention, and the numbers of those that were spoken of."""
+    """A home at the start of a request, or none: things by mention, and the numbers of those that were spoken of.
+
+    Attributes:
+        avoided: classes that `some` passes over, as what is not to be used is not chosen.
+    """
 
     def __init__(self, known: Knowledge, world: World | None) -> None:
         self.known, self.world = known, world
         self.numbers: dict[str, list[int]] = {}
+        self.avoided: frozenset[str] = frozenset()
 
     def has(self, name: str) -> bool:
         """Return whether there is a thing of a class; without a home, there is one of each."""
@@ -88,7 +93,8 @@ class Scene:
         if self.world is None:
             return tuple(ObjectRef(names[0], n) for n in range(1, count + 1))
         for name in names:
-            nodes = self._ordered([i for i in indices(self.world.home.instances(name)) if i not in taken], "")
+            found = (i for i in indices(self.world.home.instances(name)) if i not in taken)
+            nodes = self._ordered([i for i in found if self.world.home.classes[i] not in self.avoided], "")
             if len(nodes) >= count:
                 return tuple(map(self._ref, nodes[:count]))
         return ()

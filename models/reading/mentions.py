@@ -170,10 +170,14 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     if (placed := _placed(known, text, rest, count)) is not None:
         return placed
     if classes := _classes(known, rest):
+        if count == 1 and text.startswith(_PAIR) and not known.has(classes[0], "CLOTHES"):
+            count = 2
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
+    if (part := _PART_OF.fullmatch(rest)) and part[1].rpartition(" ")[2] in _PARTS:
+        return mention_of(known, part[2])
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
         return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
-    return _in_room(known, text, rest, count) or _plain(known, text)
+    return _in_room(known, text, rest, count) or _part(known, text, rest, count) or _plain(known, text)
 
 
 def _counted(text: str) -> tuple[str, int | None]:
@@ -258,6 +262,27 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
         if known.is_room(classes[0]) and not known.is_room(place.classes[0]):
             continue
         return Mention(text, classes, number, ((relation, place.classes), *place.places), is_group=is_group)
+    return None
+
+
+_PAIR = ("a pair of", "the pair of")
+_PARTS = frozenset({"drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
+
+
+def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:
+    """Return the things of a noun phrase behind that of their furniture: `the nightstand book`, `the nightstand drawer`."""
+    parts = _plain_noun(rest).split()
+    for at in range(len(parts) - 1, 0, -1):
+        before, noun = " ".join(parts[:at]), " ".join(parts[at:])
+        place = _classes(known, before)
+        if not place or known.has(place[0], "GRABBABLE") or known.is_room(place[0]):
+            continue
+        if noun in _PARTS:
+            return Mention(text, place, EVERY if count == EVERY else 1)
+        if classes := _classes(known, noun):
+            return Mention(
+                text, classes, _number(known, noun, classes, count), (("ON", place),), is_group=_is_group(noun)
+            )
     return None
 
 

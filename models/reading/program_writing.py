@@ -26,6 +26,8 @@ WAITS = "Wait"
 GRABS = "Grab"
 HANDS = 2
 PUTS = "PutBack"
+PUTTING = frozenset({"PutBack", "PutIn", "PutOn"})
+DROPS = frozenset({"Drop", "Release"})
 PUT_DOWN = ("kitchen_counter", "dining_table", "kitchen_table", "table", "coffee_table", "desk")
 """Furniture on which a thing is put down to have a hand free."""
 
@@ -143,9 +145,17 @@ def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
     for act in _in_hands(acts):
         same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
         since = found[same + 1 :] if same >= 0 else ()
+        if act.action in DROPS and _is_put(found, act):
+            continue
         if act.action == WAITS or same < 0 or any(_concerns(each, act) for each in since):
             found.append(act)
     return tuple(found)
+
+
+def _is_put(before: Sequence[Act], act: Act) -> bool:
+    """Return whether the last act before one that lets a thing go has put that thing somewhere."""
+    last = next((each for each in reversed(before) if _nodes(each.objects)[:1] == _nodes(act.objects)[:1]), None)
+    return last is not None and last.action in PUTTING
 
 
 def _in_hands(acts: Sequence[Act]) -> Iterator[Act]:
@@ -184,6 +194,7 @@ def _tidied(
 ) -> tuple[Execution, tuple[int, ...]]:
     """Return the run of a program that also closes what it opened only to reach what is in it."""
     forbidden = {(act.action, ref.node) for act in reading.forbidden for ref in act.objects}
+    forbidden |= {(CLOSES, ref.node) for act in reading.acts if act.action == OPENS for ref in act.objects}
     for at, node in reversed(list(_opened(execution, sources))):
         if (CLOSES, node) in forbidden:
             continue

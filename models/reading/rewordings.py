@@ -36,7 +36,7 @@ _PASSIVE = (
         r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?"
         r"|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
     re.compile(
-        r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is"
+        r"(?:have|get|see|want|need|i want|i need|i would like|i would love|we would like|see that|make sure|let) (?P<np>.+?)(?: (?:is"
         r"|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
     re.compile(
         r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?"
@@ -44,16 +44,14 @@ _PASSIVE = (
     re.compile(r"(?P<np>.+?) (?:is|are) what (?:needs?|wants?) (?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
 )  # fmt: skip
-_CAUSED = re.compile(r"^(?:have|get|see|want|need|i want|i need|see that|make sure|let|keep|leave) ")
-_UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
-_GIVEN = re.compile(
-    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real "
-    r"|careful |[a-z]+y )*"
-    r"(?P<verb>[a-z]+)"
+_CAUSED = re.compile(
+    r"^(?:have|get|see|want|need|i want|i need|i would like|i would love|see that|make sure|let|keep|leave) "
 )
+_UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
+_GIVEN = re.compile(r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)")
 _NEEDS_ONE = re.compile(
     r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "
-    r"(?:good |quick |proper |nice |little |thorough )*(?P<verb>[a-z]+)"
+    r"(?:[a-z]+ ){0,3}(?P<verb>[a-z]+)"
 )
 _LIGHT = re.compile(
     r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little "
@@ -112,6 +110,7 @@ _AFTER_FIRST = re.compile(
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
+_WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z]+ .+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
 _ROOM_FIRST = re.compile(
@@ -122,6 +121,7 @@ _ROOM_FIRST = re.compile(
 _PREPOSITION = re.compile(
     r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)"
 )
+_INTO = re.compile(r"into (?:your|my|the|some|a|bed|something) ?.*")
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?")
 _IT_STATE = re.compile(rf"(?:and |but )?(?P<state>{_STATE})(?: again)?")
@@ -153,6 +153,7 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _AFTER_YOU,
         _BEFORE,
         _WHILE,
+        _WHILE_YOU,
     ):
         if found := pattern.fullmatch(text):
             first, main = (found[part].strip(" ,") for part in ("first", "main"))
@@ -243,6 +244,8 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield ("unplug it",)
     if found := _OFF_TO.fullmatch(text):
         yield (f"go to {found['place']}",)
+    if found := _INTO.fullmatch(text):
+        yield (f"get {found[0]}",)
     if found := _PREPOSITION.fullmatch(text):
         yield (f"put it {found['to']}",)
         yield (f"go {found['to']}",)
