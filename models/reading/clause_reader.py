@@ -59,8 +59,8 @@ _HANDS_OFF = re.compile(
     r"|stay off|no(?! [a-z]+ing\b)) (?:of )?(.+)"
 )
 _LEFT_ALONE = re.compile(
-    r"(?:leave|let) (.+?) (?:alone|be|in peace|untouched|undisturbed|(?:exactly |just )?(?:as|where|how) (?:it|they)"
-    r" (?:is|are)(?: now)?)"
+    r"(?:leave |let |(?=.+ (?:stays?|remains?) ))(.+?) (?:(?:stays? |remains? )?(?:alone|be|in peace|untouched|undisturbed|(?:exactly |just )?(?:as|where|how) (?:it|they)"
+    r" (?:is|are)(?: now)?))"
 )
 _STAYS = re.compile(
     r"(.+?) (?:stays?|remains?|(?:can|should|must|may|shall|is to|are to|has to|have to) (?:stay|remain))"
@@ -263,7 +263,9 @@ class ClauseReader:
                 refs = self._another(needs, spoken)
             elif mention.back:
                 refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
-            elif mention.words in _DOORS and (own := self._opened(spoken)):
+            elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
+                refs = own
+            elif own := self._meant_before(mention, needs, spoken):
                 refs = own
             else:
                 refs = self.scene.things(mention, needs, action)
@@ -280,8 +282,18 @@ class ClauseReader:
         taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
         return self.scene.others(refs, taken) if refs else ()
 
-    def _opened(self, spoken: Sequence[Spoken]) -> Refs:
+    def _meant_before(self, mention: Mention, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
+        """Return the thing of a class of several that was spoken of before: `the pan` is the frying pan."""
+        is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
+        if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
+            return ()
+        fitting = (each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes)
+        return next((refs for refs in fitting if fits(self.known, refs[0].name, needs)), ())
+
+    def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
         """Return the furniture that was spoken of last, where it has a door of its own."""
+        if words.startswith("its "):
+            return next((each.refs for each in spoken if self.known.has(each.refs[0].name, "CAN_OPEN")), ())
         last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
         return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
 

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_matches import plain_words
+from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_reader import TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective
@@ -35,7 +36,8 @@ SUMMED_UP = 3
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)|,? and so (?!on\b|that\b)"
+    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut|can|could|would|make|let's|lock"
+    r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
 _ALTERNATIVE = re.compile(
@@ -52,21 +54,19 @@ _CHOICE = re.compile(
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _CONTRACTED = re.compile(
     r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
-    r"|closed|shut|on|off|running|dirty|empty|full"
+    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|in the|at the|over there|getting|ringing"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
-_UNMARKED = re.compile(
-    r"^((?:when|once|after|before|as soon as|while|if|since|because)"
-    r" (?:i|we|you|they|it|everything|everyone|that|this|the [a-z]+|my [a-z]+) [^,]+?),? ((?:i|we) (?!am\b"
-    r"|are\b|will\b|have\b).+)$"
+_SUMMARY = re.compile(
+    r"(?:washing|doing|making|cooking|cleaning|brushing|setting|getting|preparing|watching|reading|taking|tidying) "
 )
-"""A sentence whose first clause says when, without a comma behind it: `when I come home I shut the door`."""
+"""The beginning of a description that says what it describes."""
 
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(
-    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
+    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|wish|expect|ask)(?: for)?(?: you)? to "
 )
 _OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
 _SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
@@ -106,13 +106,15 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         known: the knowledge of the world.
         world: where it is to be done; None where only classes matter.
     """
-    reader = _Text(ClauseReader(Scene(known, world)))
+    reader = _Text(ClauseReader(Scene(known, world)), is_long=len(text.split()) > DESCRIPTION)
     whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", written_out(text[:LONGEST])))
     for sentence in _SENTENCES.split(corrected(whole)):
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
-            plain = _NEITHER.sub(r"\1 and \2 \3 not be ", plain)
-            reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
+            reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
+    if not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found):
+        if (wish := _STATEMENT.match(whole.lower().strip())) is not None:
+            reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
     return reader.reading()
@@ -121,8 +123,8 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
 class _Text:
     """The reading of one text, sentence by sentence."""
 
-    def __init__(self, clauses: ClauseReader) -> None:
-        self.clauses = clauses
+    def __init__(self, clauses: ClauseReader, *, is_long: bool) -> None:
+        self.clauses, self.is_long = clauses, is_long
         self.found: list[Clause] = []
         self.unread: list[str] = []
         self.spoken: tuple[Spoken, ...] = ()
@@ -135,7 +137,10 @@ class _Text:
         """Read a sentence; what it says of the order of its acts is kept."""
         self.tried = 0
         self.sentences += 1
-        self._sentence(text)
+        if self.is_long and self.sentences == 1 and _SUMMARY.match(text):
+            self._add((self.clauses.stated(text),))  # `washing the dishes by hand, which I like`
+        else:
+            self._sentence(text)
         if self.sentences == 1:
             self.first = len(self.found)
 
@@ -143,6 +148,11 @@ class _Text:
         for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
             found = read(text, self.spoken)
             if found is not None:
+                self._add(found)
+                return
+        for commas in with_comma(text):
+            found = self._in_order(commas, self.spoken) or self._subordinate(commas, self.spoken)
+            if found is not None and any(each.acts for each in found):
                 self._add(found)
                 return
         self._in_part(text)
@@ -173,11 +183,19 @@ class _Text:
         stated = self.clauses.named(found["title"]) or self.clauses.stated(found["title"])
         read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            if (placed := self._put_in(found["title"], found["rest"], spoken)) is not None:
+                return placed
             start = _BEGINNING.match(found["title"])
             alone = self._read(found["title"], spoken)
             is_read = alone is not None and any(each.acts for each in alone)
             return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
         return (stated, *read) if read else None
+
+    def _put_in(self, title: str, rest: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of things behind the name of their place: `cupboard: one plate, one bowl`."""
+        things = re.sub(r", (?=[^,]+$)", " and ", rest)
+        ways = (self._read(f"put {things} {word} {title}", spoken) for word in ("in", "on"))
+        return next((each for each in ways if each and any(clause.acts for clause in each)), None)
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""

@@ -32,7 +32,7 @@ _FEW = re.compile(
     r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) "
 )
 _DETERMINERS = re.compile(
-    r"(?:(?:a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of"
+    r"(?:(?:at least|a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of"
     r"|slices of|pieces of"
     r"|the rest of|one of|a little|the whole|the|a|an|some|any|my|your|his|her|our|their|its|this|that|these"
     r"|those|whole|entire"

@@ -9,7 +9,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.english_lexicon import is_english
 from hearth.models.reading.request_table import table_words
 
-_WORD = re.compile(r"[a-z]{3,}")
+_WORD = re.compile(r"(?<![a-z'])[a-z]{3,}(?![a-z'])")
 _LONG = 7
 """Letters from which two may be wrong."""
 
@@ -43,6 +43,15 @@ _FUNCTION_WORDS = [
     "make",
     "sure",
     "first",
+    "finally",
+    "lastly",
+    "usually",
+    "always",
+    "afterwards",
+    "together",
+    "because",
+    "already",
+    "really",
 ]
 """Words that no table has."""
 

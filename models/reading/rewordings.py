@@ -70,7 +70,7 @@ _SPENT_IN = re.compile(
     r"(?P<rest> .+)?"
 )
 _TOOL_FIRST = re.compile(
-    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)"
+    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))? (?P<clause>[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
@@ -110,6 +110,7 @@ _AFTER_FIRST = re.compile(
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
+_POSTURE = re.compile(r"(?P<main>[a-z]+ .+?),? (?P<first>(?:sitting|lying|seated)(?: down)? (?:in|on|at) .+)")
 _WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z]+ .+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
@@ -122,6 +123,12 @@ _PREPOSITION = re.compile(
     r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)"
 )
 _INTO = re.compile(r"into (?:your|my|the|some|a|bed|something) ?.*")
+_FRONTED = re.compile(
+    r"(?P<np>.+?) (?:i|you|we|he|she|they)(?: (?:just|then|always|usually|also|only|will|can|should))* (?P<verb>[a-z]+)(?P<rest> .+)?"
+)
+_COULD_GO = re.compile(
+    r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into|onto|to|back|next) .+)"
+)
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?")
 _IT_STATE = re.compile(rf"(?:and |but )?(?P<state>{_STATE})(?: again)?")
@@ -154,6 +161,7 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _BEFORE,
         _WHILE,
         _WHILE_YOU,
+        _POSTURE,
     ):
         if found := pattern.fullmatch(text):
             first, main = (found[part].strip(" ,") for part in ("first", "main"))
@@ -270,8 +278,17 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
 
 
+def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `throw the envelope away` of `the envelope I throw away`, and `the hat goes there` of `could it go there`."""
+    if (found := _FRONTED.fullmatch(text)) and _is_thing(known, found["np"]):
+        for lemma in _verbs(found["verb"]):
+            yield (f"{lemma} {found['np']}{found['rest'] or ''}",)
+    if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"{found['np']} goes{found['rest']}",)
+
+
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
+    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
 )  # fmt: skip
 
 
