@@ -23,7 +23,7 @@ _UNMARKED = re.compile(
 
 _DOING = re.compile(r"^((?:after|before|while|when) [a-z]+ing(?: [^,]{1,40}?)?),? ((?:i|we|he|she|you|they) .+)$")
 _DONE = re.compile(
-    r"^((?:once|when|after|as soon as) (?:everything|all|this|that|it) is (?:in (?:it's|its|their) place|done|finished|ready"
+    r"^((?:once|when|after|as soon as) (?:everything|all|this|that|it) is (?:in (?:it's|it is|its|their) place|done|finished|ready"
     r"|over|clean|tidy)),? (.+)$"
 )
 _TOOL = re.compile(r"^(with (?:the|a|an|my|some) [a-z]+(?: [a-z]+)?) (?:i|we|he|she|you) (.+)$")

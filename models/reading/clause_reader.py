@@ -36,8 +36,9 @@ DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
 _CLOSE = "Close"
+_ROOM = frozenset({"room"})
 _MANY = frozenset(
-    {"them", "they", "both", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
+    {"them", "they", "both", "the both", "the two", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
 )
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
@@ -265,8 +266,8 @@ class ClauseReader:
                 refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
             elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
                 refs = own
-            elif own := self._meant_before(mention, needs, spoken):
-                refs = own
+            elif own := self._meant_before(mention, spoken):
+                refs = own if all(fits(self.known, ref.name, needs) for ref in own) else ()
             else:
                 refs = self.scene.things(mention, needs, action)
             if not refs and not mention.back and any(fits(self.known, name, needs) for name in mention.classes):
@@ -282,13 +283,12 @@ class ClauseReader:
         taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
         return self.scene.others(refs, taken) if refs else ()
 
-    def _meant_before(self, mention: Mention, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
+    def _meant_before(self, mention: Mention, spoken: Sequence[Spoken]) -> Refs:
         """Return the thing of a class of several that was spoken of before: `the pan` is the frying pan."""
         is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
         if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
             return ()
-        fitting = (each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes)
-        return next((refs for refs in fitting if fits(self.known, refs[0].name, needs)), ())
+        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes), ())
 
     def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
         """Return the furniture that was spoken of last, where it has a door of its own."""
@@ -299,7 +299,7 @@ class ClauseReader:
 
     def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""
-        groups = list(spoken)
+        groups = list(spoken[:1] if needs == _ROOM else spoken)
         if action == _CLOSE:
             groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
         elif needs.isdisjoint(_OPENS):

@@ -244,7 +244,7 @@ class _Text:
         read = self.clauses.read(text, spoken, steps=is_single)
         if read is not None:
             return read
-        if verb and not text.startswith(verb):
+        if verb and not text.startswith(verb) and not is_aside(text):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
         if read is None and is_single:
             read = self._stated(text, spoken)

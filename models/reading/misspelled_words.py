@@ -44,6 +44,7 @@ _FUNCTION_WORDS = [
     "sure",
     "first",
     "finally",
+    "remember",
     "lastly",
     "usually",
     "always",
