@@ -28,6 +28,9 @@ _DONE = re.compile(
 )
 _TOOL = re.compile(r"^(with (?:the|a|an|my|some) [a-z]+(?: [a-z]+)?) (?:i|we|he|she|you) (.+)$")
 _THERE_NEEDS = re.compile(r"^there(?: is| are|'s) (.+?) (?:that|which) (needs?|wants?|has to|have to|must|should) ")
+_WHERE = re.compile(
+    r"^(?:not .+? - )?(.+?) (?:is|are) (?:where (.+?) (?:belongs?|goes|go|should go|lives?)|the (?:right )?place for (.+))$"
+)
 _OFF = re.compile(r"\b((?:turn|switch|put|shut)(?:s|ed|ing)? (?:the |it|that )(?:[a-z]+ ){0,3}?)of(?= again|$|,| and )")
 _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 
@@ -35,6 +38,8 @@ _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 def marked(text: str) -> str:
     """Return a sentence in small letters with the comma behind its first clause, where it is certain."""
     text = _OFF.sub(r"\1off", _THERE_NEEDS.sub(r"\1 \2 ", text))
+    if found := _WHERE.match(text):
+        return f"put {found[2] or found[3]} to {found[1]}"
     for pattern in (_UNMARKED, _DOING, _DONE, _TOOL):
         text = pattern.sub(r"\1, \2", text)
     return text

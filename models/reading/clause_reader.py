@@ -38,7 +38,20 @@ DEEPEST = 2
 _CLOSE = "Close"
 _ROOM = frozenset({"room"})
 _MANY = frozenset(
-    {"them", "they", "both", "the both", "the two", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
+    {
+        "them",
+        "they",
+        "both",
+        "the both",
+        "the two",
+        "them both",
+        "them all",
+        "both of them",
+        "all of them",
+        "these",
+        "those",
+        "all",
+    }
 )
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
@@ -65,7 +78,7 @@ _LEFT_ALONE = re.compile(
 )
 _STAYS = re.compile(
     r"(.+?) (?:stays?|remains?|(?:can|should|must|may|shall|is to|are to|has to|have to) (?:stay|remain))"
-    r"(?: switched| turned)? (on|off|open|closed|shut|plugged in|unplugged)"
+    r"(?: switched| turned)? (on|off|open|closed|shut|plugged in|unplugged)(?: the whole time| all the time| at all times| throughout)?"
 )
 _CHANGES = {
     "on": "switch off", "off": "switch on", "open": "close", "closed": "open", "shut": "open",

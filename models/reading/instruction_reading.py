@@ -11,7 +11,7 @@ from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_reader import TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
-from hearth.models.reading.mentions import is_adjective
+from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
@@ -54,13 +54,18 @@ _CHOICE = re.compile(
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _CONTRACTED = re.compile(
     r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
-    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|in the|at the|over there|getting|ringing"
+    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|coming|where|the place|that|all|so|in the|at the|over there|getting|ringing"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
 _SUMMARY = re.compile(
     r"(?:washing|doing|making|cooking|cleaning|brushing|setting|getting|preparing|watching|reading|taking|tidying) "
 )
 """The beginning of a description that says what it describes."""
+
+_DRESSING = re.compile(r"(?:get |be )?(?:dress|dressed|wear)\b")
+_TELEGRAM = re.compile(r"(?P<things>[^,]+), (?:then )?(?P<place>[^,]+?)(?:, (?:go|quick|now|please))?")
+_OWN_WISH = re.compile(r"(?:i|we)(?: would|'d|'ll| will)? (?:want|need|like|love|hope|plan|have) to ")
+"""What the speaker wants to do, which asks for nothing where something else was asked for."""
 
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
@@ -150,6 +155,11 @@ class _Text:
             if found is not None:
                 self._add(found)
                 return
+        if (short := _TELEGRAM.fullmatch(text)) and self._is_furniture(short["place"]):
+            found = self._put_in(short["place"], short["things"], self.spoken)  # `three books, coffee table`
+            if found is not None:
+                self._add(found)
+                return
         for commas in with_comma(text):
             found = self._in_order(commas, self.spoken) or self._subordinate(commas, self.spoken)
             if found is not None and any(each.acts for each in found):
@@ -186,10 +196,18 @@ class _Text:
             if (placed := self._put_in(found["title"], found["rest"], spoken)) is not None:
                 return placed
             start = _BEGINNING.match(found["title"])
+            if _DRESSING.match(found["title"]):
+                return self._read(f"put on {found['rest']}", spoken)
             alone = self._read(found["title"], spoken)
             is_read = alone is not None and any(each.acts for each in alone)
             return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
         return (stated, *read) if read else None
+
+    def _is_furniture(self, text: str) -> bool:
+        """Return whether words name furniture alone."""
+        mentions = mentions_in(self.clauses.known, plain_words(text))
+        names = [name for each in mentions for name in each.classes[:1]]
+        return bool(names) and not any(self.clauses.known.has(name, "GRABBABLE") for name in names)
 
     def _put_in(self, title: str, rest: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of things behind the name of their place: `cupboard: one plate, one bowl`."""
@@ -230,7 +248,7 @@ class _Text:
             if read is None:
                 continue
             now = (*_all_spoken((read,)), *spoken)
-            rest = self._joined(parts[size:], joints[size:], now, _verb_of(clause) or verb)
+            rest = self._joined(parts[size:], joints[size:], now, (read.acts and _verb_of(clause)) or verb)
             if rest is not None:
                 return (read, *rest)
         return None
@@ -273,7 +291,7 @@ class _Text:
                 read = self._one(clause, self.spoken, verb)
                 if read is not None:
                     self._add((read,))
-                    verb = _verb_of(clause) or verb
+                    verb = (read.acts and _verb_of(clause)) or verb
                     break
             else:
                 size = 1
@@ -286,12 +304,14 @@ class _Text:
         first = {(act.action, act.objects) for clause in found[: self.first] for act in clause.acts}
         later = {(act.action, act.objects) for clause in found[self.first :] for act in clause.acts if act.objects}
         found = found[self.first :] if first & later and self.sentences >= SUMMED_UP else found
+        has_acts = any(clause.acts for clause in found)
+        unread = tuple(each for each in self.unread if not (has_acts and _OWN_WISH.match(each)))
         return Reading(
             tuple(act for clause in found for act in clause.acts),
             tuple(dict.fromkeys(goal for clause in found for goal in clause.goals)),
             tuple(act for clause in found for act in clause.forbidden),
-            tuple(self.unread),
-            tuple(self.clauses.missing) if self.unread else (),
+            unread,
+            tuple(self.clauses.missing) if unread else (),
         )
 
 

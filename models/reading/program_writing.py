@@ -88,10 +88,7 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 def is_forbidden(act: Act | Step, forbidden: Sequence[Act]) -> bool:
     """Return whether an act is one of those that are not to be done: of one without things, any of its name."""
     nodes = set(_nodes(act.objects))
-    return any(
-        ban.action in (act.action, ANY_ACT) and nodes >= set(_nodes(ban.objects))
-        for ban in forbidden
-    )
+    return any(ban.action in (act.action, ANY_ACT) and nodes >= set(_nodes(ban.objects)) for ban in forbidden)
 
 
 class _Plan(NamedTuple):

@@ -93,12 +93,12 @@ _BUT_FIRST = re.compile(
 )
 _THE_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and) (?:first|before that|beforehand),? (?P<first>.+)")
 _AFTER = re.compile(
-    r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
+    r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after(?! that\b)|once|when|as soon as|now that)"
     r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with"
     r"| already)* )?(?P<first>.+)"
 )
 _AFTER_PLAIN = re.compile(
-    r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
+    r"(?P<main>.+?),? (?:only )?(?:after(?! that\b)|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
 )
 _AFTER_YOU = re.compile(r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as) you (?P<first>.+)")
 _AFTER_FIRST = re.compile(
@@ -126,6 +126,10 @@ _INTO = re.compile(r"into (?:your|my|the|some|a|bed|something) ?.*")
 _FRONTED = re.compile(
     r"(?P<np>.+?) (?:i|you|we|he|she|they)(?: (?:just|then|always|usually|also|only|will|can|should))* (?P<verb>[a-z]+)(?P<rest> .+)?"
 )
+_PLACE_FIRST = re.compile(
+    r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)|there should be|you put|put|place) (?P<np>.+)"
+)
+_SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
     r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into|onto|to|back|next) .+)"
 )
@@ -283,6 +287,10 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
     if (found := _FRONTED.fullmatch(text)) and _is_thing(known, found["np"]):
         for lemma in _verbs(found["verb"]):
             yield (f"{lemma} {found['np']}{found['rest'] or ''}",)
+    if found := _PLACE_FIRST.fullmatch(text):
+        yield (f"put {found['np']} {found['place']}",)
+    if found := _SITTING.fullmatch(text):
+        yield ("sit down", found["clause"])
     if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
         yield (f"{found['np']} goes{found['rest']}",)
 
