@@ -32,6 +32,9 @@ PUT_NEAR = "PutNear"
 CONSUME = "Consume"
 """The act of the table that eats food, and drinks what is a drink alone."""
 
+MOST_WORDS = 60
+"""Words of a clause, at most; a longer one is not read."""
+
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
@@ -123,7 +126,7 @@ class ClauseReader:
             depth: how often the clause was reworded.
         """
         plain = plain_words(text)
-        if not plain or plain in TAKEN_BACK:
+        if not plain or plain in TAKEN_BACK or len(plain.split()) > MOST_WORDS:
             return None
         if _LEFT_SO.match(plain) and (found := self._asked(plain, spoken, steps=False)) is not None:
             return found

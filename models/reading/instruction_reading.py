@@ -9,7 +9,7 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
-from hearth.models.reading.clause_reader import TAKEN_BACK, ClauseReader, unknown_ban
+from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
@@ -22,7 +22,7 @@ from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
 LONGEST = 4_000
-"""Characters that are read of a text, at most."""
+"""Characters that are read of a text, at most; how many words follow is said."""
 
 MOST_PARTS = 14
 """Parts of a sentence, at most; a sentence of more is not read."""
@@ -122,7 +122,9 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
             reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
-    return reader.reading()
+    left = len(text[LONGEST:].split())
+    reading = reader.reading()
+    return reading._replace(unread=(*reading.unread, f"{left:,} more words")) if left else reading
 
 
 class _Text:
@@ -150,6 +152,10 @@ class _Text:
             self.first = len(self.found)
 
     def _sentence(self, text: str) -> None:
+        is_one = _PARTS.search(text) is None
+        if is_one and len(text.split()) > MOST_WORDS:
+            self.unread.append(text)
+            return
         for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
             found = read(text, self.spoken)
             if found is not None:
