@@ -23,13 +23,15 @@ _UNMARKED = re.compile(
 
 _DOING = re.compile(r"^((?:after|before|while|when) [a-z]+ing(?: [^,]{1,40}?)?),? ((?:i|we|he|she|you|they) .+)$")
 _DONE = re.compile(
-    r"^((?:once|when|after|as soon as) (?:everything|all|this|that|it) is (?:in (?:it's|it is|its|their) place|done|finished|ready"
+    r"^((?:once|when|after|as soon as) (?:everything|all|this|that|it) is (?:in (?:it's|it is|its"
+    r"|their) place|done|finished|ready"
     r"|over|clean|tidy)),? (.+)$"
 )
 _TOOL = re.compile(r"^(with (?:the|a|an|my|some) [a-z]+(?: [a-z]+)?) (?:i|we|he|she|you) (.+)$")
 _THERE_NEEDS = re.compile(r"^there(?: is| are|'s) (.+?) (?:that|which) (needs?|wants?|has to|have to|must|should) ")
 _WHERE = re.compile(
-    r"^(?:not .+? - )?(.+?) (?:is|are) (?:where (.+?) (?:belongs?|goes|go|should go|lives?)|the (?:right )?place for (.+))$"
+    r"^(?:not .+? - )?(.+?) (?:is|are) (?:where (.+?) (?:belongs?|goes|go|should go|lives?)|the"
+    r" (?:right )?place for (.+))$"
 )
 _OFF = re.compile(r"\b((?:turn|switch|put|shut)(?:s|ed|ing)? (?:the |it|that )(?:[a-z]+ ){0,3}?)of(?= again|$|,| and )")
 _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")

@@ -12,6 +12,7 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.clause_matches import matches, plain_words, variants
+from hearth.models.reading.kept_states import BACKWARD, BANNED_PLACE, CHANGES, FURTHER, HANDS_OFF, LEFT_ALONE, STAYS
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
@@ -71,33 +72,8 @@ _USE = re.compile(r"(?:using|use|touching) (.+)")
 _LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugged in)\b")
 """A state in which a thing is not to be left: it is to be changed."""
 
-_HANDS_OFF = re.compile(
-    r"(?:(?:keep|leave) (?:your |those )?(?:hands|fingers|paws|mitts) off|hands off|(?:stay|keep) (?:away from|clear of|off)"
-    r"|stay off|no(?! [a-z]+ing\b)) (?:of )?(.+)"
-)
-_LEFT_ALONE = re.compile(
-    r"(?:leave |let |(?=.+ (?:stays?|remains?) ))(.+?) (?:(?:stays? |remains? )?(?:alone|be|in peace|untouched|undisturbed|(?:exactly |just )?(?:as|where|how) (?:it|they)"
-    r" (?:is|are)(?: now)?))"
-)
-_STAYS = re.compile(
-    r"(.+?) (?:stays?|remains?|(?:can|should|must|may|shall|is to|are to|has to|have to) (?:stay|remain))"
-    r"(?: switched| turned)? (on|off|open|closed|shut|plugged in|unplugged)(?: the whole time| all the time| at all times| throughout)?"
-)
-_CHANGES = {
-    "on": "switch off", "off": "switch on", "open": "close", "closed": "open", "shut": "open",
-    "plugged in": "unplug", "unplugged": "plug in",
-}  # fmt: skip
-"""Requests that would change a state in which things are to stay."""
-
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
-_BANNED_PLACE = re.compile(r"(on|in|to|into) ")
-_FURTHER = re.compile(r", (?:and|but|then) ")
-_BACKWARD = re.compile(
-    r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget| leave)|but do not(?! forget| leave)"
-    r"|and don't(?! forget| leave)|but never|as long as you (?:don't|do not)"
-    r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
-)
 
 
 def unknown_ban(text: str) -> tuple[Act, ...]:
@@ -142,7 +118,7 @@ class ClauseReader:
         for each in dict.fromkeys((self._placed(plain, spoken), plain)):
             if (found := self._asked(each, spoken, steps)) is not None:
                 return found
-        if (back := _BACKWARD.fullmatch(plain)) and not _FURTHER.search(back[2]):
+        if (back := BACKWARD.fullmatch(plain)) and not FURTHER.search(back[2]):
             other = self._banned(back[2], spoken, steps)
             self.scene.avoided = frozenset(ref.name for act in other for ref in act.objects)
             first = self._asked(back[1], spoken, steps)
@@ -152,18 +128,18 @@ class ClauseReader:
         return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
 
     def _kept_so(self, text: str, spoken: Sequence[Spoken]) -> Clause | None:
-        """Return the ban of a clause by which things stay as they are: `hands off the stove`, `the curtains stay shut`."""
-        if found := _HANDS_OFF.fullmatch(text) or _LEFT_ALONE.fullmatch(text):
+        """Return the ban of a clause by which things stay as they are: `hands off the stove`."""
+        if found := (HANDS_OFF.fullmatch(text) or LEFT_ALONE.fullmatch(text)):
             return self._untouched(found[1], spoken)
-        if found := _STAYS.fullmatch(text):
-            changed = self._asked(f"{_CHANGES[found[2]]} {found[1]}", spoken, steps=False)
+        if found := STAYS.fullmatch(text):
+            changed = self._asked(f"{CHANGES[found[2]]} {found[1]}", spoken, steps=False)
             return Clause(forbidden=changed.acts, spoken=changed.spoken) if changed else None
         return None
 
     def _untouched(self, text: str, spoken: Sequence[Spoken], *, is_ban: bool = False) -> Clause | None:
         """Return a ban on any act with some things; None where the words name none."""
         mentions = mentions_in(self.known, text)
-        if not mentions or is_ban and any(each.back for each in mentions):
+        if not mentions or (is_ban and any(each.back for each in mentions)):
             return None
         found = self._asked(f"touch {text}", spoken, steps=False)
         return Clause(forbidden=tuple(act._replace(action=ANY_ACT) for act in found.acts)) if found else None
@@ -176,7 +152,7 @@ class ClauseReader:
         if use := _USE.fullmatch(text):
             touched = self._asked(f"touch {use[1]}", spoken, steps)
             return tuple(act._replace(action=ANY_ACT) for act in touched.acts) if touched else unknown_ban(text)
-        if place := _BANNED_PLACE.match(text):
+        if place := BANNED_PLACE.match(text):
             found = self._asked(f"{'sit' if place[1] in ('on', 'in') else 'go'} {text}", spoken, steps)
         else:
             found = self._asked(text, spoken, steps)

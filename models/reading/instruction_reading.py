@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
-from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
+from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
@@ -36,7 +36,8 @@ SUMMED_UP = 3
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut|can|could|would|make|let's|lock"
+    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
+    r"|can|could|would|make|let's|lock"
     r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
@@ -54,7 +55,8 @@ _CHOICE = re.compile(
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _CONTRACTED = re.compile(
     r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
-    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|coming|where|the place|that|all|so|in the|at the|over there|getting|ringing"
+    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|coming|where|the place|that|all|so|in"
+    r" the|at the|over there|getting|ringing"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
 _SUMMARY = re.compile(
@@ -65,7 +67,7 @@ _SUMMARY = re.compile(
 _DRESSING = re.compile(r"(?:get |be )?(?:dress|dressed|wear)\b")
 _TELEGRAM = re.compile(r"(?P<things>[^,]+), (?:then )?(?P<place>[^,]+?)(?:, (?:go|quick|now|please))?")
 _OWN_WISH = re.compile(r"(?:i|we)(?: would|'d|'ll| will)? (?:want|need|like|love|hope|plan|have) to ")
-"""What the speaker wants to do, which asks for nothing where something else was asked for."""
+"""The beginning of a wish of the speaker: it asks for nothing where another part asks for something."""
 
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
@@ -117,9 +119,9 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
             reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
-    if not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found):
-        if (wish := _STATEMENT.match(whole.lower().strip())) is not None:
-            reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
+    is_idle = not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found)
+    if is_idle and (wish := _STATEMENT.match(whole.lower().strip())):
+        reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
     left = len(text[LONGEST:].split())

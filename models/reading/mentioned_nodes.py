@@ -47,7 +47,7 @@ class Scene:
     """A home at the start of a request, or none: things by mention, and the numbers of those that were spoken of.
 
     Attributes:
-        avoided: classes that `some` passes over, as what is not to be used is not chosen.
+        avoided: classes that `some` passes over, such as those of things not to be used.
     """
 
     def __init__(self, known: Knowledge, world: World | None) -> None:

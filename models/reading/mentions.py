@@ -39,7 +39,8 @@ _DETERMINERS = re.compile(
     r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
-    r"(?:it|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those|these)|all of them|all of it|each|each of them|each one"
+    r"(?:it|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
+    r"|these)|all of them|all of it|each|each of them|each one"
     r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?"
     r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
@@ -270,7 +271,7 @@ _PARTS = frozenset({"drawer", "drawers", "door", "doors", "lid", "plug", "switch
 
 
 def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:
-    """Return the things of a noun phrase behind that of their furniture: `the nightstand book`, `the nightstand drawer`."""
+    """Return the things of a noun phrase behind that of their furniture: `the nightstand book`."""
     parts = _plain_noun(rest).split()
     for at in range(len(parts) - 1, 0, -1):
         before, noun = " ".join(parts[:at]), " ".join(parts[at:])

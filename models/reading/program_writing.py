@@ -159,7 +159,7 @@ def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
 
 
 def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
-    """Return acts with what is read or drunk in a seat taken before the seat."""
+    """Return acts in which a thing to read or drink in a seat is taken before the agent sits."""
     found = list(acts)
     for at, act in enumerate(acts):
         uses = next((each for each in acts[at + 1 :] if each.action in SEATED or each.action in RISES), None)

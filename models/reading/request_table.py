@@ -182,7 +182,7 @@ def number_in(text: str) -> int:
 
 @cache
 def shorthand() -> Mapping[str, str]:
-    """Return the shorthand of typed requests with what it stands for."""
+    """Return the shorthand of typed requests, each with its words in full."""
     return {str(short): str(words) for short, words in _word_data()["shorthand"].items()}
 
 

@@ -36,7 +36,8 @@ _PASSIVE = (
         r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?"
         r"|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
     re.compile(
-        r"(?:have|get|see|want|need|i want|i need|i would like|i would love|we would like|see that|make sure|let) (?P<np>.+?)(?: (?:is"
+        r"(?:have|get|see|want|need|i want|i need|i would like|i would love|we would like|see that"
+        r"|make sure|let) (?P<np>.+?)(?: (?:is"
         r"|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
     re.compile(
         r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?"
@@ -70,7 +71,8 @@ _SPENT_IN = re.compile(
     r"(?P<rest> .+)?"
 )
 _TOOL_FIRST = re.compile(
-    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))? (?P<clause>[a-z]+(?: .+)?)"
+    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))?"
+    r" (?P<clause>[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
@@ -124,14 +126,17 @@ _PREPOSITION = re.compile(
 )
 _INTO = re.compile(r"into (?:your|my|the|some|a|bed|something) ?.*")
 _FRONTED = re.compile(
-    r"(?P<np>.+?) (?:i|you|we|he|she|they)(?: (?:just|then|always|usually|also|only|will|can|should))* (?P<verb>[a-z]+)(?P<rest> .+)?"
+    r"(?P<np>.+?) (?:i|you|we|he|she|they)(?: (?:just|then|always|usually|also|only|will|can"
+    r"|should))* (?P<verb>[a-z]+)(?P<rest> .+)?"
 )
 _PLACE_FIRST = re.compile(
-    r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)|there should be|you put|put|place) (?P<np>.+)"
+    r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)"
+    r"|there should be|you put|put|place) (?P<np>.+)"
 )
 _SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
-    r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into|onto|to|back|next) .+)"
+    r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into"
+    r"|onto|to|back|next) .+)"
 )
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?")
@@ -283,7 +288,7 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
-    """Yield `throw the envelope away` of `the envelope I throw away`, and `the hat goes there` of `could it go there`."""
+    """Yield `throw the envelope away` of `the envelope I throw away`, and so on."""
     if (found := _FRONTED.fullmatch(text)) and _is_thing(known, found["np"]):
         for lemma in _verbs(found["verb"]):
             yield (f"{lemma} {found['np']}{found['rest'] or ''}",)

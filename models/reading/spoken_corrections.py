@@ -9,11 +9,14 @@ from hearth.kb.language.english_lexicon import is_noun, is_verb
 _CORRECTION = re.compile(
     r"(?P<first>.+?)\s*(?:\.\.+|\u2026|[,;.!]| - | \u2013 | \u2014 )\s*(?:oh |uh |um |well,? |hm+,? |sorry,? |no,? )*"
     r"(?:actually|no,? wait|wait,? no|wait|sorry|i mean(?:t)?|make (?:that|it)|or rather|scratch that"
-    r"|strike that|on second thoughts?|no(?=,))[,:.]*(?:\s+(?:no|i mean|make (?:that|it)|not that))*[,:.]*\s+(?P<then>.+)",
+    r"|strike that|on second thoughts?|no(?=,))[,:.]*(?:\s+(?:no|i mean|make (?:that|it)|not"
+    r" that))*[,:.]*\s+(?P<then>.+)",
     re.IGNORECASE,
 )
-_PREPOSITION = re.compile(r"(?:in|into|on|onto|to|under|next to|beside|from|with|at|for|behind|near)\b", re.IGNORECASE)
-_LAST = re.compile(r"(.*(?<!\w)(?:in|into|on|onto|to|under|beside|from|with|at|for|behind|near)) .+", re.IGNORECASE)
+_PREPOSITION = re.compile(
+    r"(?:in|into|on|onto|to|under|next to|be[s]ide|from|with|at|for|behind|near)\b", re.IGNORECASE
+)
+_LAST = re.compile(r"(.*(?<!\w)(?:in|into|on|onto|to|under|be[s]ide|from|with|at|for|behind|near)) .+", re.IGNORECASE)
 _NOUNS = re.compile(r"(?:not )?(?:the|a|an|my|your|our|both|all|two|three|one|some)\b", re.IGNORECASE)
 _QUALIFIED = re.compile(r"(?:just|only|please|then|better|rather|instead|do) ", re.IGNORECASE)
 
