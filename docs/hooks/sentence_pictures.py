@@ -40,8 +40,8 @@ ABOUT = """\
 Sentences of an author who had not seen the reader, and the programs that `hearth model show` writes for them: good and
 bad. A command picked them, not a person (`python docs/hooks/sentence_pictures.py`): eighteen instructions at equal
 steps of `tests/models/everyday_unseen.jsonl`, six other wordings whose goal is not reached, three descriptions, and
-three requests that no home can do. The picture shows the home after the last step. A sentence asks for a goal that its author
-wrote; whether it is reached stands below the program. [Models](models.md#what-a-person-says) has the figures.
+three requests that no home can do. The picture shows the home after the last step. A sentence has a goal that its
+author wrote; whether it is reached stands below the program. [Models](models.md#what-a-person-says) has the figures.
 """
 
 

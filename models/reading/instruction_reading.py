@@ -59,6 +59,9 @@ _CONTRACTED = re.compile(
     r" the|at the|over there|getting|ringing"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
+_PERFECT = re.compile(r"(?:i|we)(?:'ve| have) (?:already |just )?[a-z]+(?:ed|en|ne|ght|ut)\b")
+"""The beginning of a statement about the past: `I have taken the letter out`."""
+
 _SUMMARY = re.compile(
     r"(?:washing|doing|making|cooking|cleaning|brushing|setting|getting|preparing|watching|reading|taking|tidying) "
 )
@@ -264,7 +267,11 @@ class _Text:
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
         is_single = _PARTS.search(text) is None
-        is_statement = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
+        is_statement = (
+            _OBSERVED.match(text)
+            or (not is_all and not self.is_long and _PERFECT.match(text))
+            or (not is_all and _SITUATION.match(text) and is_aside(text))
+        )
         if is_single and is_statement:
             return self.clauses.stated(text)
         read = self.clauses.read(text, spoken, steps=is_single)
