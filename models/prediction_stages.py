@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from hearth.models.interface import Request, Steps
 from hearth.models.protocols import Trained
+from hearth.models.reading.instruction_reading import LONGEST
 from hearth.models.reading.misspelled_words import corrections
 from hearth.models.reading.program_writing import sketch_of
 from hearth.models.reading.reader import Reader
@@ -63,11 +64,11 @@ def show_text(trained: Trained, text: str, world: World, writer: Trained | None 
 
 def show_reading(reader: Reader, text: str, world: World) -> Shown:
     """Return the program of the reader for a text in a world, with the words that each step is for."""
-    found = tuple(words_of(Request("text", "", text)))
+    found = tuple(words_of(Request("text", "", text[:LONGEST])))
     if not found:
         return Shown((), (), complete((), world, world.home.knowledge), EMPTY)
     answer = reader.answer(text, world, rules_of(world.home.knowledge))
-    corrected = corrections(world.home.knowledge, text)
+    corrected = corrections(world.home.knowledge, text[:LONGEST])
     forbidden = tuple(dict.fromkeys(act.words for act in answer.reading.forbidden))
     sketch = sketch_of(answer.reading)
     written = answer.written

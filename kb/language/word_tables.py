@@ -52,6 +52,7 @@ def inflected(lemma: str, kind: str) -> tuple[str, ...]:
     return tuple(dict.fromkeys(form.lower() for spelt in found.values() for form in spelt if form))
 
 
+@lru_cache(maxsize=65_536)
 def is_everyday(word: str) -> bool:
     """Return whether a word is one of everyday English, as in texts of films: a lexicon lacks many of them."""
     return f"{json.dumps(word, ensure_ascii=False)}:".encode() in _text("spellchecker", "en.json.gz")

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.english_lexicon import is_verb, verb_lemmas
+from hearth.kb.language.word_tables import lemmas
 from hearth.models.reading.mentioned_nodes import fits
 from hearth.models.reading.mentions import mentions_in
 from hearth.models.reading.request_table import Pattern, Request, requests, words
@@ -17,6 +18,8 @@ _WHERE = re.compile(
     r"|stand|close to)\b"
 )
 
+
+_ADVERB = re.compile(r"\b[a-z]{3,}ly\b")
 
 _PLACES = frozenset("pyd")
 """Slots of one thing: places, vessels and devices."""
@@ -45,10 +48,17 @@ def _may_be(known: Knowledge, text: str, needs: frozenset[str], *, is_one: bool)
 
 
 @lru_cache(maxsize=4096)
+def is_manner(word: str) -> bool:
+    """Return whether a word is an adverb that changes nothing of a request, as `briefly` is."""
+    return set(lemmas(word)) == {"ADV"} and word != "only"
+
+
+@lru_cache(maxsize=4096)
 def plain_words(text: str) -> str:
     """Return a clause without courtesy, and without openings such as `could you`."""
     table = words()
-    text = " ".join(table.courtesy.sub(" ", text.lower()).split()).strip(' ,;:.!?-"')
+    text = _ADVERB.sub(lambda found: "" if is_manner(found[0]) else found[0], table.courtesy.sub(" ", text.lower()))
+    text = " ".join(text.split()).strip(' ,;:.!?-"')
     while (found := table.openings.match(text)) and found.end():
         text = text[found.end() :].strip(" ,")
     first, _, rest = text.partition(" ")

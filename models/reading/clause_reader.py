@@ -12,6 +12,7 @@ from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.clause_matches import matches, plain_words, variants
+from hearth.models.reading.kept_states import BACKWARD, BANNED_PLACE, CHANGES, FURTHER, HANDS_OFF, LEFT_ALONE, STAYS
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
 from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
@@ -32,12 +33,29 @@ PUT_NEAR = "PutNear"
 CONSUME = "Consume"
 """The act of the table that eats food, and drinks what is a drink alone."""
 
+MOST_WORDS = 60
+"""Words of a clause, at most; a longer one is not read."""
+
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
 _CLOSE = "Close"
+_ROOM = frozenset({"room"})
 _MANY = frozenset(
-    {"them", "they", "both", "them both", "them all", "both of them", "all of them", "these", "those", "all"}
+    {
+        "them",
+        "they",
+        "both",
+        "the both",
+        "the two",
+        "them both",
+        "them all",
+        "both of them",
+        "all of them",
+        "these",
+        "those",
+        "all",
+    }
 )
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
@@ -56,11 +74,6 @@ _LEFT_SO = re.compile(r"(?:do not|don't|never) leave .+ (?:on|open|running|plugg
 
 _LEFT = re.compile(r"(?:put|leave|place|set|lay|drop|keep|stow|store|stand) ")
 _REMINDER = re.compile(r"(?:do not|don't|dont|never) (?:forget|hesitate)")
-_BACKWARD = re.compile(
-    r"(.+?),? (?:without|instead of|rather than|but not|and not|but don't(?! forget)|but do not(?! forget)"
-    r"|and don't(?! forget)|but never|as long as you (?:don't|do not)"
-    r"|provided you (?:don't|do not)|so long as you (?:don't|do not)) ((?:[a-z]+ing|[a-z]+) .+)"
-)
 
 
 def unknown_ban(text: str) -> tuple[Act, ...]:
@@ -89,23 +102,47 @@ class ClauseReader:
             depth: how often the clause was reworded.
         """
         plain = plain_words(text)
-        if not plain or plain in TAKEN_BACK:
+        if not plain or plain in TAKEN_BACK or len(plain.split()) > MOST_WORDS:
             return None
         if _LEFT_SO.match(plain) and (found := self._asked(plain, spoken, steps=False)) is not None:
             return found
         if _LEFT_SO.match(plain) and depth < DEEPEST and (found := self._reworded(plain, spoken, depth, steps)):
             return found
+        if (kept := self._kept_so(plain, spoken)) is not None:
+            return kept
         if (negated := _NEGATION.fullmatch(plain)) and not _REMINDER.match(plain):
             found = self._asked(negated[1], spoken, steps)
-            return Clause(forbidden=found.acts, spoken=found.spoken) if found else None
+            if found is None:
+                return self._untouched(negated[1], spoken, is_ban=True)
+            return Clause(forbidden=found.acts, spoken=found.spoken)
         for each in dict.fromkeys((self._placed(plain, spoken), plain)):
             if (found := self._asked(each, spoken, steps)) is not None:
                 return found
-        if back := _BACKWARD.fullmatch(plain):
-            first, other = self._asked(back[1], spoken, steps), self._banned(back[2], spoken, steps)
+        if (back := BACKWARD.fullmatch(plain)) and not FURTHER.search(back[2]):
+            other = self._banned(back[2], spoken, steps)
+            self.scene.avoided = frozenset(ref.name for act in other for ref in act.objects)
+            first = self._asked(back[1], spoken, steps)
+            self.scene.avoided = frozenset()
             if first:
                 return first._replace(forbidden=other)
         return self._reworded(plain, spoken, depth, steps) if depth < DEEPEST else None
+
+    def _kept_so(self, text: str, spoken: Sequence[Spoken]) -> Clause | None:
+        """Return the ban of a clause by which things stay as they are: `hands off the stove`."""
+        if found := (HANDS_OFF.fullmatch(text) or LEFT_ALONE.fullmatch(text)):
+            return self._untouched(found[1], spoken)
+        if found := STAYS.fullmatch(text):
+            changed = self._asked(f"{CHANGES[found[2]]} {found[1]}", spoken, steps=False)
+            return Clause(forbidden=changed.acts, spoken=changed.spoken) if changed else None
+        return None
+
+    def _untouched(self, text: str, spoken: Sequence[Spoken], *, is_ban: bool = False) -> Clause | None:
+        """Return a ban on any act with some things; None where the words name none."""
+        mentions = mentions_in(self.known, text)
+        if not mentions or (is_ban and any(each.back for each in mentions)):
+            return None
+        found = self._asked(f"touch {text}", spoken, steps=False)
+        return Clause(forbidden=tuple(act._replace(action=ANY_ACT) for act in found.acts)) if found else None
 
     def _banned(self, text: str, spoken: Sequence[Spoken], steps: bool) -> tuple[Act, ...]:
         """Return the acts that a ban names; `NO_ACT` where it names none of ours, as in `without a noise`.
@@ -115,7 +152,10 @@ class ClauseReader:
         if use := _USE.fullmatch(text):
             touched = self._asked(f"touch {use[1]}", spoken, steps)
             return tuple(act._replace(action=ANY_ACT) for act in touched.acts) if touched else unknown_ban(text)
-        found = self._asked(text, spoken, steps)
+        if place := BANNED_PLACE.match(text):
+            found = self._asked(f"{'sit' if place[1] in ('on', 'in') else 'go'} {text}", spoken, steps)
+        else:
+            found = self._asked(text, spoken, steps)
         return unknown_ban(text) if found is None else found.acts
 
     def _placed(self, text: str, spoken: Sequence[Spoken]) -> str:
@@ -216,8 +256,10 @@ class ClauseReader:
                 refs = self._another(needs, spoken)
             elif mention.back:
                 refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
-            elif mention.words in _DOORS and (own := self._opened(spoken)):
+            elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
                 refs = own
+            elif own := self._meant_before(mention, spoken):
+                refs = own if all(fits(self.known, ref.name, needs) for ref in own) else ()
             else:
                 refs = self.scene.things(mention, needs, action)
             if not refs and not mention.back and any(fits(self.known, name, needs) for name in mention.classes):
@@ -233,14 +275,23 @@ class ClauseReader:
         taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
         return self.scene.others(refs, taken) if refs else ()
 
-    def _opened(self, spoken: Sequence[Spoken]) -> Refs:
+    def _meant_before(self, mention: Mention, spoken: Sequence[Spoken]) -> Refs:
+        """Return the thing of a class of several that was spoken of before: `the pan` is the frying pan."""
+        is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
+        if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
+            return ()
+        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes), ())
+
+    def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
         """Return the furniture that was spoken of last, where it has a door of its own."""
+        if words.startswith("its "):
+            return next((each.refs for each in spoken if self.known.has(each.refs[0].name, "CAN_OPEN")), ())
         last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
         return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
 
     def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""
-        groups = list(spoken)
+        groups = list(spoken[:1] if needs == _ROOM else spoken)
         if action == _CLOSE:
             groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
         elif needs.isdisjoint(_OPENS):

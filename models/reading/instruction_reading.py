@@ -7,19 +7,22 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from hearth.kb.knowledge import Knowledge
+from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_matches import plain_words
-from hearth.models.reading.clause_reader import TAKEN_BACK, ClauseReader, unknown_ban
+from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
 from hearth.models.reading.mentioned_nodes import Scene
-from hearth.models.reading.mentions import is_adjective
+from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
 from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import orders
+from hearth.models.reading.shorthand import written_out
+from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
 LONGEST = 4_000
-"""Characters that are read of a text, at most."""
+"""Characters that are read of a text, at most; how many words follow is said."""
 
 MOST_PARTS = 14
 """Parts of a sentence, at most; a sentence of more is not read."""
@@ -33,7 +36,9 @@ SUMMED_UP = 3
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)"
+    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
+    r"|can|could|would|make|let's|lock"
+    r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
     r"|[;,:] (?:and )?| - | – | — |\. )"
 )
 _ALTERNATIVE = re.compile(
@@ -50,21 +55,28 @@ _CHOICE = re.compile(
 _CONTINUED = re.compile(r"(?:\.\.+|…) ?((?:or|and|but|then) )")
 _CONTRACTED = re.compile(
     r"\b(here|where|there|what|that|it|he|she|[a-z]+(?=['’]s (?:still |not |all |really |too |so )?(?:open"
-    r"|closed|shut|on|off|running|dirty|empty|full"
+    r"|closed|shut|on|off|running|dirty|empty|full|filthy|dusty|coming|where|the place|that|all|so|in"
+    r" the|at the|over there|getting|ringing"
     r"|clean|cold|hot|dark|standing|lying)\b))['’]s\b"
 )
-_UNMARKED = re.compile(
-    r"^((?:when|once|after|before|as soon as|while|if|since|because)"
-    r" (?:i|we|you|they|it|everything|everyone|that|this|the [a-z]+|my [a-z]+) [^,]+?),? ((?:i|we) (?!am\b"
-    r"|are\b|will\b|have\b).+)$"
+_PERFECT = re.compile(r"(?:i|we)(?:'ve| have) (?:already |just )?[a-z]+(?:ed|en|ne|ght|ut)\b")
+"""The beginning of a statement about the past: `I have taken the letter out`."""
+
+_SUMMARY = re.compile(
+    r"(?:washing|doing|making|cooking|cleaning|brushing|setting|getting|preparing|watching|reading|taking|tidying) "
 )
-"""A sentence whose first clause says when, without a comma behind it: `when I come home I shut the door`."""
+"""The beginning of a description that says what it describes."""
+
+_DRESSING = re.compile(r"(?:get |be )?(?:dress|dressed|wear)\b")
+_TELEGRAM = re.compile(r"(?P<things>[^,]+), (?:then )?(?P<place>[^,]+?)(?:, (?:go|quick|now|please))?")
+_OWN_WISH = re.compile(r"(?:i|we)(?: would|'d|'ll| will)? (?:want|need|like|love|hope|plan|have) to ")
+"""The beginning of a wish of the speaker: it asks for nothing where another part asks for something."""
 
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
 _STATEMENT = re.compile(
-    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|have|wish|expect|ask)(?: for)?(?: you)? to "
+    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|wish|expect|ask)(?: for)?(?: you)? to "
 )
 _OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
 _SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
@@ -104,43 +116,64 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         known: the knowledge of the world.
         world: where it is to be done; None where only classes matter.
     """
-    reader = _Text(ClauseReader(Scene(known, world)))
-    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", text[:LONGEST].replace("\u2019", "'")))
-    for sentence in _SENTENCES.split(whole):
+    reader = _Text(ClauseReader(Scene(known, world)), is_long=len(text.split()) > DESCRIPTION)
+    whole = _CHOICE.sub(" or ", _CONTINUED.sub(r" \1", written_out(text[:LONGEST])))
+    for sentence in _SENTENCES.split(corrected(whole)):
         plain = spelled(known, _CONTRACTED.sub(r"\1 is", " ".join(sentence.lower().split()).strip(' .!?,;:"')))
         if plain:
-            plain = _NEITHER.sub(r"\1 and \2 \3 not be ", plain)
-            reader.sentence(_UNMARKED.sub(r"\1, \2", plain))
-    is_bare = reader.sentences == 1 and reader.found and not reader.unread
-    if is_bare and not any(clause.acts or clause.forbidden for clause in reader.found):
-        reader.sentence(f"bring me {plain_words(text)}")  # `my glasses, please`
-    return reader.reading()
+            reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
+    is_idle = not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found)
+    if is_idle and (wish := _STATEMENT.match(whole.lower().strip())):
+        reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
+    if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
+        reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
+    left = len(text[LONGEST:].split())
+    reading = reader.reading()
+    return reading._replace(unread=(*reading.unread, f"{left:,} more words")) if left else reading
 
 
 class _Text:
     """The reading of one text, sentence by sentence."""
 
-    def __init__(self, clauses: ClauseReader) -> None:
-        self.clauses = clauses
+    def __init__(self, clauses: ClauseReader, *, is_long: bool) -> None:
+        self.clauses, self.is_long = clauses, is_long
         self.found: list[Clause] = []
         self.unread: list[str] = []
         self.spoken: tuple[Spoken, ...] = ()
         self.tried = 0
         self.sentences = 0
         self.first = 0
+        self.named = ""
 
     def sentence(self, text: str) -> None:
         """Read a sentence; what it says of the order of its acts is kept."""
         self.tried = 0
         self.sentences += 1
-        self._sentence(text)
+        if self.is_long and self.sentences == 1 and _SUMMARY.match(text):
+            self._add((self.clauses.stated(text),))  # `washing the dishes by hand, which I like`
+        else:
+            self._sentence(text)
         if self.sentences == 1:
             self.first = len(self.found)
 
     def _sentence(self, text: str) -> None:
+        is_one = _PARTS.search(text) is None
+        if is_one and len(text.split()) > MOST_WORDS:
+            self.unread.append(text)
+            return
         for read in (self._in_order, self._titled, self._whole, self._read, self._subordinate):
             found = read(text, self.spoken)
             if found is not None:
+                self._add(found)
+                return
+        if (short := _TELEGRAM.fullmatch(text)) and self._is_furniture(short["place"]):
+            found = self._put_in(short["place"], short["things"], self.spoken)  # `three books, coffee table`
+            if found is not None:
+                self._add(found)
+                return
+        for commas in with_comma(text):
+            found = self._in_order(commas, self.spoken) or self._subordinate(commas, self.spoken)
+            if found is not None and any(each.acts for each in found):
                 self._add(found)
                 return
         self._in_part(text)
@@ -168,14 +201,30 @@ class _Text:
         found = _TITLE.fullmatch(text)
         if not found:
             return None
-        stated = self.clauses.stated(found["title"])
+        stated = self.clauses.named(found["title"]) or self.clauses.stated(found["title"])
         read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            if (placed := self._put_in(found["title"], found["rest"], spoken)) is not None:
+                return placed
             start = _BEGINNING.match(found["title"])
+            if _DRESSING.match(found["title"]):
+                return self._read(f"put on {found['rest']}", spoken)
             alone = self._read(found["title"], spoken)
             is_read = alone is not None and any(each.acts for each in alone)
             return alone if is_read or not start else self._read(f"{start[0]} {found['rest']}", spoken)
         return (stated, *read) if read else None
+
+    def _is_furniture(self, text: str) -> bool:
+        """Return whether words name furniture alone."""
+        mentions = mentions_in(self.clauses.known, plain_words(text))
+        names = [name for each in mentions for name in each.classes[:1]]
+        return bool(names) and not any(self.clauses.known.has(name, "GRABBABLE") for name in names)
+
+    def _put_in(self, title: str, rest: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
+        """Return the clauses of things behind the name of their place: `cupboard: one plate, one bowl`."""
+        things = re.sub(r", (?=[^,]+$)", " and ", rest)
+        ways = (self._read(f"put {things} {word} {title}", spoken) for word in ("in", "on"))
+        return next((each for each in ways if each and any(clause.acts for clause in each)), None)
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""
@@ -210,7 +259,7 @@ class _Text:
             if read is None:
                 continue
             now = (*_all_spoken((read,)), *spoken)
-            rest = self._joined(parts[size:], joints[size:], now, _verb_of(clause) or verb)
+            rest = self._joined(parts[size:], joints[size:], now, (read.acts and _verb_of(clause)) or verb)
             if rest is not None:
                 return (read, *rest)
         return None
@@ -218,13 +267,17 @@ class _Text:
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
         is_single = _PARTS.search(text) is None
-        is_statement = _OBSERVED.match(text) or (not is_all and _SITUATION.match(text) and is_aside(text))
+        is_statement = (
+            _OBSERVED.match(text)
+            or (not is_all and not self.is_long and _PERFECT.match(text))
+            or (not is_all and _SITUATION.match(text) and is_aside(text))
+        )
         if is_single and is_statement:
             return self.clauses.stated(text)
         read = self.clauses.read(text, spoken, steps=is_single)
         if read is not None:
             return read
-        if verb and not text.startswith(verb):
+        if verb and not text.startswith(verb) and not is_aside(text):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
         if read is None and is_single:
             read = self._stated(text, spoken)
@@ -238,7 +291,9 @@ class _Text:
             return self.clauses.stated(text)
         if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
             return Clause()
-        return self.clauses.named(text)
+        if (named := self.clauses.named(text)) is not None and not self.named:
+            self.named = plain_words(text)
+        return named
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
@@ -251,7 +306,7 @@ class _Text:
                 read = self._one(clause, self.spoken, verb)
                 if read is not None:
                     self._add((read,))
-                    verb = _verb_of(clause) or verb
+                    verb = (read.acts and _verb_of(clause)) or verb
                     break
             else:
                 size = 1
@@ -264,12 +319,14 @@ class _Text:
         first = {(act.action, act.objects) for clause in found[: self.first] for act in clause.acts}
         later = {(act.action, act.objects) for clause in found[self.first :] for act in clause.acts if act.objects}
         found = found[self.first :] if first & later and self.sentences >= SUMMED_UP else found
+        has_acts = any(clause.acts for clause in found)
+        unread = tuple(each for each in self.unread if not (has_acts and _OWN_WISH.match(each)))
         return Reading(
             tuple(act for clause in found for act in clause.acts),
             tuple(dict.fromkeys(goal for clause in found for goal in clause.goals)),
             tuple(act for clause in found for act in clause.forbidden),
-            tuple(self.unread),
-            tuple(self.clauses.missing) if self.unread else (),
+            unread,
+            tuple(self.clauses.missing) if unread else (),
         )
 
 
@@ -306,7 +363,9 @@ def is_aside(text: str) -> bool:
     """Return whether a clause asks for nothing."""
     if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
         return False
-    return text not in TAKEN_BACK and words().asides.fullmatch(text) is not None
+    if text in TAKEN_BACK:
+        return False
+    return any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain_words(text))) if each)
 
 
 def _verb_of(text: str) -> str:

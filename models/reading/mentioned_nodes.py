@@ -44,11 +44,16 @@ def _is_room(known: Knowledge, name: str, needs: Collection[str]) -> bool:
 
 
 class Scene:
-    """A home at the start of a request, or none: things by mention, and the numbers of those that were spoken of."""
+    """A home at the start of a request, or none: things by mention, and the numbers of those that were spoken of.
+
+    Attributes:
+        avoided: classes that `some` passes over, such as those of things not to be used.
+    """
 
     def __init__(self, known: Knowledge, world: World | None) -> None:
         self.known, self.world = known, world
         self.numbers: dict[str, list[int]] = {}
+        self.avoided: frozenset[str] = frozenset()
 
     def has(self, name: str) -> bool:
         """Return whether there is a thing of a class; without a home, there is one of each."""
@@ -88,10 +93,17 @@ class Scene:
         if self.world is None:
             return tuple(ObjectRef(names[0], n) for n in range(1, count + 1))
         for name in names:
-            nodes = self._ordered([i for i in indices(self.world.home.instances(name)) if i not in taken], "")
+            found = (i for i in self._named(name) if i not in taken)
+            nodes = self._ordered([i for i in found if self.world.home.classes[i] not in self.avoided], "")
             if len(nodes) >= count:
                 return tuple(map(self._ref, nodes[:count]))
         return ()
+
+    def _named(self, name: str) -> list[int]:
+        """Return the nodes of a class; those that a home has in its place only where it has none of its own."""
+        assert self.world is not None
+        every = list(indices(self.world.home.instances(name)))
+        return [i for i in every if self.world.home.classes[i] == name] or every
 
     def others(self, refs: Refs, taken: Collection[int]) -> Refs:
         """Return another thing of the class of some things, none of those that are taken."""
@@ -127,7 +139,7 @@ class Scene:
         is_all = mention.count <= 0 and mention.is_group
         for is_placed in (True, False) if mention.places else (False,):
             for name in classes:
-                nodes = [i for i in indices(self.world.home.instances(name)) if i not in found]
+                nodes = [i for i in self._named(name) if i not in found]
                 found += [i for i in nodes if not is_placed or self._is_at(i, mention)]
                 if not is_all and len(found) >= max(mention.count, 1):
                     return found

@@ -32,14 +32,15 @@ _FEW = re.compile(
     r"(?:some|a few|several|a bunch of|a number of|a handful of|a load of|a pile of|a stack of|plenty of) "
 )
 _DETERMINERS = re.compile(
-    r"(?:(?:a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of"
+    r"(?:(?:at least|a (?:bit|drink|bite|sip|drop|spot|pinch|piece|slice|dash|portion|serving|helping|little bit) of"
     r"|slices of|pieces of"
     r"|the rest of|one of|a little|the whole|the|a|an|some|any|my|your|his|her|our|their|its|this|that|these"
     r"|those|whole|entire"
     r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
-    r"(?:it|them|they|that|this|those|these|one|ones|both|both of them|all of them|all of it|each|each of them|each one"
+    r"(?:it|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
+    r"|these)|all of them|all of it|each|each of them|each one"
     r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?"
     r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
@@ -170,10 +171,14 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     if (placed := _placed(known, text, rest, count)) is not None:
         return placed
     if classes := _classes(known, rest):
+        if count == 1 and text.startswith(_PAIR) and not known.has(classes[0], "CLOTHES"):
+            count = 2
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
+    if (part := _PART_OF.fullmatch(rest)) and part[1].rpartition(" ")[2] in _PARTS:
+        return mention_of(known, part[2])
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
         return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
-    return _in_room(known, text, rest, count) or _plain(known, text)
+    return _in_room(known, text, rest, count) or _part(known, text, rest, count) or _plain(known, text)
 
 
 def _counted(text: str) -> tuple[str, int | None]:
@@ -258,6 +263,27 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
         if known.is_room(classes[0]) and not known.is_room(place.classes[0]):
             continue
         return Mention(text, classes, number, ((relation, place.classes), *place.places), is_group=is_group)
+    return None
+
+
+_PAIR = ("a pair of", "the pair of")
+_PARTS = frozenset({"drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
+
+
+def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:
+    """Return the things of a noun phrase behind that of their furniture: `the nightstand book`."""
+    parts = _plain_noun(rest).split()
+    for at in range(len(parts) - 1, 0, -1):
+        before, noun = " ".join(parts[:at]), " ".join(parts[at:])
+        place = _classes(known, before)
+        if not place or known.has(place[0], "GRABBABLE") or known.is_room(place[0]):
+            continue
+        if noun in _PARTS:
+            return Mention(text, place, EVERY if count == EVERY else 1)
+        if classes := _classes(known, noun):
+            return Mention(
+                text, classes, _number(known, noun, classes, count), (("ON", place),), is_group=_is_group(noun)
+            )
     return None
 
 

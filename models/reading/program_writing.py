@@ -26,6 +26,17 @@ WAITS = "Wait"
 GRABS = "Grab"
 HANDS = 2
 PUTS = "PutBack"
+PUTTING = frozenset({"PutBack", "PutIn", "PutOn"})
+TOGGLES = (
+    frozenset({"SwitchOn", "SwitchOff", "PlugOut"}),
+    frozenset({"PutIn", "PutBack", "Grab", "Drop", "PutOn", "Eat", "Drink"}),
+)
+"""Acts that undo one another; one of them alone holds for a thing."""
+
+SEATS = frozenset({"Sit", "Lie"})
+RISES = frozenset({"StandUp", "WakeUp", "Walk"})
+SEATED = frozenset({"Read", "Drink"})
+DROPS = frozenset({"Drop", "Release"})
 PUT_DOWN = ("kitchen_counter", "dining_table", "kitchen_table", "table", "coffee_table", "desk")
 """Furniture on which a thing is put down to have a hand free."""
 
@@ -63,7 +74,7 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 
     Should the whole not run as its parts did, it is planned as a whole.
     """
-    acts = _wanted([act for act in reading.acts if not is_forbidden(act, reading.forbidden)])
+    acts = _wanted(_fetched_first([act for act in reading.acts if not is_forbidden(act, reading.forbidden)]))
     planned = _planned(acts, world, rules)
     execution = run(world, Program(steps=planned.steps), rules)
     if execution.failure is not None:
@@ -77,10 +88,7 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 def is_forbidden(act: Act | Step, forbidden: Sequence[Act]) -> bool:
     """Return whether an act is one of those that are not to be done: of one without things, any of its name."""
     nodes = set(_nodes(act.objects))
-    return any(
-        ban.action in (act.action, ANY_ACT) and (not ban.objects or bool(nodes & set(_nodes(ban.objects))))
-        for ban in forbidden
-    )
+    return any(ban.action in (act.action, ANY_ACT) and nodes >= set(_nodes(ban.objects)) for ban in forbidden)
 
 
 class _Plan(NamedTuple):
@@ -143,9 +151,46 @@ def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
     for act in _in_hands(acts):
         same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
         since = found[same + 1 :] if same >= 0 else ()
+        if _is_so(found, act) or (act.action in DROPS and _is_put(found, act)):
+            continue
         if act.action == WAITS or same < 0 or any(_concerns(each, act) for each in since):
             found.append(act)
     return tuple(found)
+
+
+def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
+    """Return acts in which a thing to read or drink in a seat is taken before the agent sits."""
+    found = list(acts)
+    for at, act in enumerate(acts):
+        uses = next((each for each in acts[at + 1 :] if each.action in SEATED or each.action in RISES), None)
+        if act.action not in SEATS or uses is None or uses.action in RISES or not uses.objects:
+            continue
+        thing = uses.objects[:1]
+        if not any(_nodes(each.objects)[:1] == _nodes(thing) for each in acts[: acts.index(uses)]):
+            found.insert(found.index(act), Act(GRABS, thing, uses.words))
+    return found
+
+
+def _is_so(before: Sequence[Act], act: Act) -> bool:
+    """Return whether a thing already is as an act makes it, by the last act that bears on that."""
+    kinds = next((kinds for kinds in TOGGLES if act.action in kinds), None)
+    if kinds is None or not act.objects:
+        return False
+    last = next(
+        (
+            each
+            for each in reversed(before)
+            if each.action in kinds and _nodes(each.objects)[:1] == _nodes(act.objects)[:1]
+        ),
+        None,
+    )
+    return last is not None and last.action == act.action and last.objects == act.objects
+
+
+def _is_put(before: Sequence[Act], act: Act) -> bool:
+    """Return whether the last act before one that lets a thing go has put that thing somewhere."""
+    last = next((each for each in reversed(before) if _nodes(each.objects)[:1] == _nodes(act.objects)[:1]), None)
+    return last is not None and last.action in PUTTING
 
 
 def _in_hands(acts: Sequence[Act]) -> Iterator[Act]:
@@ -184,6 +229,7 @@ def _tidied(
 ) -> tuple[Execution, tuple[int, ...]]:
     """Return the run of a program that also closes what it opened only to reach what is in it."""
     forbidden = {(act.action, ref.node) for act in reading.forbidden for ref in act.objects}
+    forbidden |= {(CLOSES, ref.node) for act in reading.acts if act.action == OPENS for ref in act.objects}
     for at, node in reversed(list(_opened(execution, sources))):
         if (CLOSES, node) in forbidden:
             continue

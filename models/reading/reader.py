@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hearth.kb.action_sets import LATEST
 from hearth.kb.loading.load import default
 from hearth.models.interface import Request, Settings, Steps, Training
+from hearth.models.reading.clause_marks import DESCRIPTION
 from hearth.models.reading.instruction_reading import Reading, read_text
 from hearth.models.reading.narration import narrated
 from hearth.models.reading.program_writing import Written, is_forbidden, repeats, write_program
@@ -27,9 +28,6 @@ from hearth.storage.parallel import Seen, unseen
 if TYPE_CHECKING:
     from hearth.models.checkpoint import Checkpoint
     from hearth.models.text_examples import Corpus
-
-DESCRIPTION = 25
-"""Words from which a text is a description: what is not understood of it is left out, and not refused."""
 
 
 class Answer(NamedTuple):

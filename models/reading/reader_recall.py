@@ -35,7 +35,7 @@ class ReaderRecall(Settings):
 
     neighbours: int = 20
     sharpness: float = 2.0
-    trust: float = 0.5
+    trust: float = 0.25
 
     def fit(self, corpus: Corpus, how: Training, seen: Seen = unseen) -> TrainedReaderRecall:
         """Remember the training texts and programs."""

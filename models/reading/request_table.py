@@ -22,6 +22,10 @@ _ANYTHING = re.compile(r"(?<!\w)\.\+")
 _OF_ONE_CLAUSE = "(?:(?!(?: |(?<= ))(?:and|then|but) |[,;:] ).)+"
 """Any words of a pattern are those of one clause."""
 
+_ANYTHING_ELSE = re.compile(r"\.(?=[+*])")
+_OF_ONE_JOINT = "(?:(?!(?: |(?<= ))then |,? then |[,;] (?:and|but) |; ).)"
+"""Any words of an ending do not reach into the next clause."""
+
 _GROUP = re.compile(r"<(\w+)>")
 
 
@@ -109,7 +113,8 @@ def _request(row: Mapping[str, Any], groups: Mapping[str, str]) -> Request:
 
 
 def _alternatives(words: list[str]) -> str:
-    ordered = sorted(words, key=lambda each: (-len(each), each))
+    plain = [each.replace(" yourself", "") for each in words]  # a word of courtesy, which is left out
+    ordered = sorted({*words, *plain}, key=lambda each: (-len(each), each))
     return f"(?:{'|'.join(map(re.escape, ordered))})"
 
 
@@ -157,7 +162,7 @@ def words() -> Words:
     return Words(
         re.compile(rf"(?<![\w'])(?:{courtesy})(?![\w'])"),
         re.compile(rf"(?:{'|'.join(data['openings'])})(?![\w'])[\s,:]*"),
-        tuple(re.compile(rf",? {each}$") for each in data["endings"]),
+        tuple(re.compile(rf",? {_ANYTHING_ELSE.sub(_OF_ONE_JOINT, each)}$") for each in data["endings"]),
         re.compile("|".join(data["asides"])),
         {name: tuple(classes) for kind in ("things", "groups") for name, classes in data[kind].items()},
         frozenset(data["groups"]),
@@ -173,6 +178,12 @@ def acts_of(kind: str) -> frozenset[str]:
 def number_in(text: str) -> int:
     """Return the number that a word says; 0 where it says none."""
     return NUMBERS.get(text, 0) or (int(text) if text.isascii() and text.isdigit() and len(text) < 3 else 0)
+
+
+@cache
+def shorthand() -> Mapping[str, str]:
+    """Return the shorthand of typed requests, each with its words in full."""
+    return {str(short): str(words) for short, words in _word_data()["shorthand"].items()}
 
 
 @cache

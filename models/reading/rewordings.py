@@ -36,7 +36,8 @@ _PASSIVE = (
         r"(?P<np>.+?) (?:gets?|is getting|are getting|is being|needs?"
         r"|wants?) (?:to be )?(?P<verb>[a-z]+(?:ed|en|t|ing|d|n))(?P<rest> .+)?"),
     re.compile(
-        r"(?:have|get|see|want|need|i want|i need|see that|make sure|let) (?P<np>.+?)(?: (?:is"
+        r"(?:have|get|see|want|need|i want|i need|i would like|i would love|we would like|see that"
+        r"|make sure|let) (?P<np>.+?)(?: (?:is"
         r"|are))? (?P<verb>[a-z]+(?:ed|en|t|d|n))(?P<rest> .+)?"),
     re.compile(
         r"(?P<np>.+?) (?:could do with|could use|is due|are due|is in need of|requires?"
@@ -44,16 +45,14 @@ _PASSIVE = (
     re.compile(r"(?P<np>.+?) (?:is|are) what (?:needs?|wants?) (?P<verb>[a-z]+ing)(?P<rest> .+)?"),
     re.compile(r"(?P<np>.+?),? (?P<verb>[a-z]+(?:ed|en))(?P<rest> .+)?"),
 )  # fmt: skip
-_CAUSED = re.compile(r"^(?:have|get|see|want|need|i want|i need|see that|make sure|let|keep|leave) ")
-_UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
-_GIVEN = re.compile(
-    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:good |quick |proper |nice |little |thorough |real "
-    r"|careful |[a-z]+y )*"
-    r"(?P<verb>[a-z]+)"
+_CAUSED = re.compile(
+    r"^(?:have|get|see|want|need|i want|i need|i would like|i would love|see that|make sure|let|keep|leave) "
 )
+_UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
+_GIVEN = re.compile(r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)")
 _NEEDS_ONE = re.compile(
     r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "
-    r"(?:good |quick |proper |nice |little |thorough )*(?P<verb>[a-z]+)"
+    r"(?:[a-z]+ ){0,3}(?P<verb>[a-z]+)"
 )
 _LIGHT = re.compile(
     r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little "
@@ -72,7 +71,8 @@ _SPENT_IN = re.compile(
     r"(?P<rest> .+)?"
 )
 _TOOL_FIRST = re.compile(
-    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,) (?P<clause>[a-z]+(?: .+)?)"
+    r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))?"
+    r" (?P<clause>[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
@@ -95,12 +95,12 @@ _BUT_FIRST = re.compile(
 )
 _THE_FIRST = re.compile(r"(?P<main>.+?),? (?:but|and) (?:first|before that|beforehand),? (?P<first>.+)")
 _AFTER = re.compile(
-    r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after|once|when|as soon as|now that)"
+    r"(?P<main>.+?),? (?:only |right |just |straight |directly )?(?:after(?! that\b)|once|when|as soon as|now that)"
     r" (?:(?:you have|you've|you are|you're|you|having|have)(?: been| done| finished| are| with"
     r"| already)* )?(?P<first>.+)"
 )
 _AFTER_PLAIN = re.compile(
-    r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
+    r"(?P<main>.+?),? (?:only )?(?:after(?! that\b)|once|when|as soon as|now that) (?:you |you've )?(?P<first>.+)"
 )
 _AFTER_YOU = re.compile(r"(?P<main>.+?),? (?:only )?(?:after|once|when|as soon as) you (?P<first>.+)")
 _AFTER_FIRST = re.compile(
@@ -112,6 +112,8 @@ _AFTER_FIRST = re.compile(
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
+_POSTURE = re.compile(r"(?P<main>[a-z]+ .+?),? (?P<first>(?:sitting|lying|seated)(?: down)? (?:in|on|at) .+)")
+_WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z]+ .+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
 _ROOM_FIRST = re.compile(
@@ -121,6 +123,20 @@ _ROOM_FIRST = re.compile(
 )
 _PREPOSITION = re.compile(
     r"(?:back |straight |right |and |also )*(?P<to>(?:in|into|inside|on|onto|upon|to|over to|next to|beside|by) .+)"
+)
+_INTO = re.compile(r"into (?:your|my|the|some|a|bed|something) ?.*")
+_FRONTED = re.compile(
+    r"(?P<np>.+?) (?:i|you|we|he|she|they)(?: (?:just|then|always|usually|also|only|will|can"
+    r"|should))* (?P<verb>[a-z]+)(?P<rest> .+)?"
+)
+_PLACE_FIRST = re.compile(
+    r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)"
+    r"|there should be|you put|put|place) (?P<np>.+)"
+)
+_SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
+_COULD_GO = re.compile(
+    r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into"
+    r"|onto|to|back|next) .+)"
 )
 _OFF_TO = re.compile(r"(?:and )?off (?:to|you go to|we go to) (?P<place>.+)")
 _PARTICLE = re.compile(r"(?:back |then |and |straight )*(?P<state>on|off|up|down|open|shut|closed|out)(?: again)?")
@@ -153,6 +169,8 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _AFTER_YOU,
         _BEFORE,
         _WHILE,
+        _WHILE_YOU,
+        _POSTURE,
     ):
         if found := pattern.fullmatch(text):
             first, main = (found[part].strip(" ,") for part in ("first", "main"))
@@ -243,6 +261,8 @@ def _without_object(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield ("unplug it",)
     if found := _OFF_TO.fullmatch(text):
         yield (f"go to {found['place']}",)
+    if found := _INTO.fullmatch(text):
+        yield (f"get {found[0]}",)
     if found := _PREPOSITION.fullmatch(text):
         yield (f"put it {found['to']}",)
         yield (f"go {found['to']}",)
@@ -267,8 +287,21 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
 
 
+def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `throw the envelope away` of `the envelope I throw away`, and so on."""
+    if (found := _FRONTED.fullmatch(text)) and _is_thing(known, found["np"]):
+        for lemma in _verbs(found["verb"]):
+            yield (f"{lemma} {found['np']}{found['rest'] or ''}",)
+    if found := _PLACE_FIRST.fullmatch(text):
+        yield (f"put {found['np']} {found['place']}",)
+    if found := _SITTING.fullmatch(text):
+        yield ("sit down", found["clause"])
+    if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"{found['np']} goes{found['rest']}",)
+
+
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
+    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
 )  # fmt: skip
 
 

@@ -68,15 +68,21 @@ class TrainedConsensus:
 
     def predict(self, requests: Sequence[Request], beam: int = 1) -> list[Steps]:
         """Return for each text the program most similar to all that were drawn or found for it."""
+        return [consensus(*each) for each in self.candidates(requests, beam)]
+
+    def candidates(self, requests: Sequence[Request], beam: int = 1) -> list[tuple[list[Steps], list[float]]]:
+        """Return for each text the programs that were drawn or found for it, with their weights, which sum to one."""
         best = self.writer.predict(requests, beam)
         found = self.neighbours.candidates(requests)
-        return [self._answer(*each) for each in zip(requests, best, found, strict=True)]
+        return [self._pool(*each) for each in zip(requests, best, found, strict=True)]
 
-    def _answer(self, request: Request, best: Steps, found: tuple[Sequence[Steps], Sequence[float]]) -> Steps:
+    def _pool(
+        self, request: Request, best: Steps, found: tuple[Sequence[Steps], Sequence[float]]
+    ) -> tuple[list[Steps], list[float]]:
         written = [best, *self.writer.drawn(request, self.settings.draws)]
         programs, weights = found
         own, others = (1 - self.settings.share) / len(written), self.settings.share / sum(weights)
-        return consensus([*written, *programs], [own] * len(written) + [weight * others for weight in weights])
+        return [*written, *programs], [own] * len(written) + [weight * others for weight in weights]
 
     def scorer(self) -> TextScorer:
         """Return the network alone, for decoding with the engine in the loop."""
