@@ -9,7 +9,7 @@ from typing import Any
 from hearth.challenges.instruction_object_names import label
 from hearth.challenges.instruction_writer import acted, instruction
 from hearth.envs.json_observations import last_json, seen_failure
-from hearth.envs.seen_bans import BANS
+from hearth.schemas.goals import BANS
 from hearth.homes.geometry import footprint
 from hearth.kb.action_groups import relation_of
 from hearth.schemas.failure_words import sentence
