@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from hearth.schemas.vocabulary import STATE_ID
 from hearth.simulation.observation.views import View
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.states import CLOSED
 
 MOST_CLOSED = 3
 """Closed things that a remedy names."""
@@ -21,7 +21,7 @@ def places_to_look(name: str, view: View) -> str:
     home, known = view.world.home, view.world.home.knowledge
     kind = known.object_class(name)
     closed = home.properties["CAN_OPEN"] & home.properties["CONTAINERS"] & ~home.doors & view.mask
-    closed &= view.world.states[STATE_ID["CLOSED"]]
+    closed &= view.world.states[CLOSED]
     portable = kind is not None and "GRABBABLE" in kind.properties
     likely = [*indices(closed & home.furniture), *indices(closed & ~home.furniture)][:MOST_CLOSED] if portable else []
     inside = [f"{home.classes[i]} {home.ids[i]}" for i in likely]

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import replace
+
 from hearth.agents.protocol import Choice, Resigned
 from hearth.envs.agent_answers import Fault, Keep, by_number, by_words, keep_nothing, row
 from hearth.envs.answer_forms import WALK, read_answer
 from hearth.envs.compact_text import compact, said_step, wanted_nodes
 from hearth.envs.seen_bans import SeenBans
 from hearth.envs.text_agent import TALKING, Ask, description, plain
+from hearth.envs.text_layout import layout
 from hearth.envs.text_protocol_settings import protocol
 from hearth.envs.text_worlds import reason
 from hearth.schemas.agent_messages import ASK, TELL
@@ -118,8 +122,7 @@ class TerminalAgent:
         if word == "look" and not rest:
             return description(view, self._goal, self._bans) + "\n"
         if word == "list":
-            self._rest = [f"{n} {said_step(plain(step))}" for n, step in enumerate(legal)]
-            self._rest = [line for line in self._rest if rest in line.partition(" ")[2].lower()]
+            self._rest = list(_listed(rest, view, legal))
             return self._page() if self._rest else f"You can do nothing now with `{rest[:60]}` in it.\n"
         if word == "more" and not rest:
             return self._page() if self._rest else "There are no more. `list` begins again.\n"
@@ -137,7 +140,23 @@ class TerminalAgent:
             return by_number(int(number), list(legal))
         if self.messages and line.partition(" ")[0] in (ASK, TELL):
             return by_words(line, view, legal, messages=True)
-        return read_answer(answer, view, legal, protocol())
+        step = read_answer(answer, view, legal, protocol())
+        if step is None or step.action != WALK or line.lower().startswith(WALK.lower()):
+            return step
+        whole = replace(step, action="Walk")  # where a walk takes one tick, nobody wants it by meters
+        return whole if whole in legal else step
+
+
+def _listed(word: str, view: View, legal: Legal) -> Iterator[str]:
+    """Yield the commands with a word, each after its number; without one, no walks, and none about walls and floors."""
+    home, words = view.world.home, protocol()
+    built = layout(home, words).built
+    for number, step in enumerate(legal):
+        line = said_step(plain(step))
+        nodes = [home.index[ref.node] for ref in step.objects if ref.node is not None]
+        is_usual = step.action not in words.hidden and not any(built >> i & 1 for i in nodes)
+        if word in line.lower() if word else is_usual:
+            yield f"{number} {line}"
 
 
 class _Walk:
