@@ -14,7 +14,7 @@ MOST_ROOMS = 2
 
 
 def places_to_look(name: str, view: View) -> str:
-    """Return where a thing that is not seen may be, from what the agent sees: `you see none; open fridge 137, ...`.
+    """Return places that may have a thing, by the agent's own sight: `you see none; open fridge 137, ...`.
 
     Furniture is in no closed thing, so for it only other rooms are named.
     """
@@ -25,6 +25,8 @@ def places_to_look(name: str, view: View) -> str:
     portable = kind is not None and "GRABBABLE" in kind.properties
     likely = [*indices(closed & home.furniture), *indices(closed & ~home.furniture)][:MOST_CLOSED] if portable else []
     inside = [f"{home.classes[i]} {home.ids[i]}" for i in likely]
-    rooms = [f"{home.classes[i]} {home.ids[i]}" for i in indices(home.rooms) if home.ids[i] != view.me.room][:MOST_ROOMS]
+    rooms = [f"{home.classes[i]} {home.ids[i]}" for i in indices(home.rooms) if home.ids[i] != view.me.room][
+        :MOST_ROOMS
+    ]
     ways = [*([f"open {' or '.join(inside)}"] if inside else []), *([f"look in {' or '.join(rooms)}"] if rooms else [])]
     return f"you see none; {', or '.join(ways)}" if ways else "you see none"

@@ -5,7 +5,15 @@ import re
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import META, PlanLine
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
-from hearth.kb.language.step_like_lines import are_steps, chained, is_like_step, is_sure_step, is_title, reads_as_step, sentences
+from hearth.kb.language.step_like_lines import (
+    are_steps,
+    chained,
+    is_like_step,
+    is_sure_step,
+    is_title,
+    reads_as_step,
+    sentences,
+)
 from hearth.kb.language.title_marks import doubted
 from hearth.schemas.program_boundaries import is_sentence
 
