@@ -1,7 +1,7 @@
-"""python benchmarks/judged_instructions.py: household instructions as others judged them, and requests of others read back.
+"""python benchmarks/judged_instructions.py: household instructions as others judge them, and their requests.
 
-`tests/golden/challenges/judged_tasks.txt` has the answers of somebody who saw 200 instructions and their goals, drawn by
-a seed over all splits and families. The files `*paraphrases.txt` and `requests_of_another_author.txt` have goals, and
+`tests/golden/challenges/judged_tasks.txt` has the answers of a stranger about 200 instructions and their goals, drawn
+by a seed over all splits and families. The other files have goals, and
 what people said for them: counted is how many are read back as the goal, refused, and read as another goal.
 """
 

@@ -129,8 +129,8 @@ def _number(words: str) -> int:
 
 _ONE_OF = re.compile(r"one of (?:the|my|our|your) ")
 _PART = re.compile(
-    r"((?:[a-z]+ )*?)(?:pack|packet|package|box|bottle|carton|pair|piece|sheet|roll|jar|can|tin|bag|tub|tube|slice|bit|glass"
-    r"|bar|loaf|block|bunch|set|stick)(?:e?s)? of ([a-z' -]+)"
+    r"((?:[a-z]+ )*?)(?:pack|packet|package|box|bottle|carton|pair|piece|sheet|roll|jar|can|tin|bag|tub|tube|slice|bit"
+    r"|glass|bar|loaf|block|bunch|set|stick)(?:e?s)? of ([a-z' -]+)"
 )
 
 
