@@ -53,7 +53,7 @@ def tokens(text: str, known: Known) -> Iterator[Token]:
             phrase = " ".join(words[at : at + length])
             named = things(phrase, known) if not re.search(r"[,.:;!?]|\b(?:and|or|nor|with)\b", phrase) else None
             if named and len(named) == 1 and (length > 1 or phrase not in phrases):
-                yield Token("thing", phrase, named[0])
+                yield Token("thing", phrase, (str(named[0][0]), named[0][1]))
                 break
             if phrase in phrases or (length == 1 and not phrase[0].isalnum()):
                 yield Token(" ".join(phrases.get(phrase, (phrase,))), phrase)
