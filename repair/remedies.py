@@ -1,5 +1,6 @@
 """The known repair of a failing step in words: `open the fridge first`."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -71,7 +72,7 @@ def _all_needed(context: RepairContext, steps: tuple[Step, ...]) -> tuple[Step, 
         handler = HANDLERS.get(failure.code) if failure.tick == len(found) else None
         next_context = _context(tried, failure)
         more = _inserted(next_context, handler(next_context)) if handler is not None else ()
-        if not more:
+        if len(more) != 1:  # a longer repair is a choice of its own: fetching a tool
             break
         found = (*found, *more)
     return steps
@@ -83,12 +84,18 @@ def phrase(step: Step, known: Knowledge) -> str:
     return said[:1].lower() + said[1:]
 
 
+_PARTICLE = re.compile(r"^(switch|turn|plug) (on|off|in|out) it$")
+"""The end of a phrase whose particle stands behind the pronoun: `switch it on`."""
+
+
 def _phrases(steps: Sequence[Step], known: Knowledge) -> list[str]:
     """Return steps as people say them; `it` is the only thing that the step before names."""
     said, last = [], None
     for step in steps:
         words = phrase(step, known)
-        said.append(words.replace(listed([last.name]), "it") if last in step.objects and last is not None else words)
+        if last is not None and last in step.objects:
+            words = _PARTICLE.sub(r"\1 it \2", words.replace(listed([last.name]), "it"))
+        said.append(words)
         last = step.objects[0] if len(step.objects) == 1 else None
     return said
 
