@@ -24,7 +24,7 @@ def read_request(text: str, known: Known, knowledge: Knowledge, doer: str, relat
     Args:
         text: in lower case.
         known: the nouns of things.
-        knowledge: for what is switched on, and the act that opens.
+        knowledge: of switches, and of the act that opens.
         doer: the agent of the goal.
         relation: gives the relation of a preposition and a place.
     """
@@ -277,7 +277,7 @@ class _Reading(Statements):
                 self.waiting, self.at, self.last = [], (relation, place), (relation, place)
 
     def _it(self, words: str) -> None:
-        """Take a word for what was named; it says nothing new, but where a verb waits for it."""
+        """Take a word for a thing named before; it says nothing new, except where a verb waits for it."""
         if words == "one" and any(number > 1 for _, number in self.waiting):
             raise RefusedError  # `two plates, one on the table`
         if self.mode in ("take", "hold") and not self.waiting and self.said not in ("held", "at", "on"):

@@ -102,7 +102,7 @@ class Statements:
         self.emit("on", [(("ON", name), number) for name, number in found])
 
     def none_on(self) -> None:
-        """Say of what waits that none of it is on.
+        """Say that none of the waiting things is on.
 
         Raises:
             RefusedError: a number of things is named, `two lamps`.

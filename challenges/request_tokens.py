@@ -64,7 +64,7 @@ def tokens(text: str, known: Known) -> Iterator[Token]:
 
 
 def sentences(found: list[Token]) -> Iterator[list[Token]]:
-    """Part tokens at full stops and the like."""
+    """Part tokens at the marks that end sentences."""
     part: list[Token] = []
     for token in found:
         if token.kind in _END:

@@ -46,7 +46,7 @@ def test_it_is_a_vector_environment(homes):
 
 
 def test_every_number_of_the_space_can_be_given(homes):
-    """Those between actions without objects and the others are no actions: refused as illegal ones are, for one tick."""
+    """Those between actions without objects and the others are refused as illegal ones are, for one tick."""
     homes.reset(seed=3)
     before = homes.worlds.arrays(0)["places"].copy()
     first = homes.worlds.batch.table.first_plane
