@@ -51,8 +51,8 @@ def play(
     """Play an episode in a home until a goal is reached, with agents of any kind.
 
     An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal: `help`), `listen` or
-    `listen:PORT` (a program that connects to that port of this machine), `stdio` (the program that runs this command), a
-    language model (llm:MODEL@URL), or `wait`. Agents that are not named wait. docs/examples/agents.md describes the
+    `listen:PORT` (a program that connects to that port of this machine), `stdio` (the program that runs this command),
+    a language model (llm:MODEL@URL), or `wait`. Agents that are not named wait. docs/examples/agents.md describes the
     messages. The status is 1 if the goal is not reached.
 
     \b
