@@ -208,8 +208,12 @@ def _is_of_typer(error: Exception) -> bool:
         return False
     for name in ("message", "param_hint", "option_name"):
         if isinstance(text := getattr(error, name, None), str):
-            setattr(error, name, shown(text))
+            setattr(error, name, shown(text.removeprefix(LIBRARYS)))
     return True
+
+
+LIBRARYS = "Value error, "
+"""Words that the library for types puts before the reason."""
 
 
 def _fail(error: Exception, *, as_json: bool) -> NoReturn:

@@ -64,7 +64,7 @@ ONLINE: dict[str, OnlineKind] = {
     "af_gpn": OnlineKind(
         lambda goals: ProposedPlans(goals, particles=20), "the commonest first action of 20 plans", network=LARGE
     ),
-    **{f"nopa_k{k}": _nopa(f"NOPA with {k} particles", Settings(particles=k)) for k in (1, 2, 5, 10, 40)},
+    **{f"nopa_k{k}": _nopa(f"NOPA with {k} particle{'s' * (k > 1)}", Settings(particles=k)) for k in (1, 2, 5, 10, 40)},
     "nopa_uniform": _nopa("NOPA, uniform proposals (RG)", Settings(proposals="uniform")),
     "nopa_no_inverse": _nopa(
         "NOPA, uniform proposals, no inverse planning", Settings(proposals="uniform", inverse_planning=False)

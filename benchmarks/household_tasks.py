@@ -2,6 +2,7 @@
 
     python benchmarks/household_tasks.py --out /tmp/household.jsonl              all 12,500, about an hour
     python benchmarks/household_tasks.py --out /tmp/household.jsonl --limit 100  the first 100 of each split
+    python benchmarks/household_tasks.py --out /tmp/household.jsonl --seed 1 --minutes 15   as many as 15 minutes allow
     python benchmarks/household_tasks.py --out /tmp/household.jsonl --leaks      only make them and compare splits
     python benchmarks/household_tasks.py --out /tmp/household.jsonl --summary    what is in the file
 
@@ -31,6 +32,7 @@ from hearth.challenges.instruction_reader import read_instruction
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.rng import rng
 from hearth.simulation.env import Env
 from hearth.simulation.goals import Progress
 from hearth.simulation.world.world import World
@@ -128,6 +130,8 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, metavar="FILE")
     parser.add_argument("--limit", type=int, help="tasks of each split; all where it is left out")
     parser.add_argument("--split", choices=sorted(settings()["splits"]), help="tasks of this one alone")
+    parser.add_argument("--seed", type=int, help="take tasks in an order drawn from it, over all splits and families")
+    parser.add_argument("--minutes", type=float, help="stop after them; the file goes on in the next run")
     parser.add_argument("--leaks", action="store_true", help="make the tasks and compare splits, check nothing else")
     parser.add_argument("--summary", action="store_true", help="check nothing, print what is in the file")
     asked = parser.parse_args()
@@ -138,14 +142,19 @@ def main() -> None:
     left = [] if asked.summary else [
         each for split in splits for each in household_ids(split, asked.limit) if each not in done
     ]  # fmt: skip
+    if asked.seed is not None:
+        left = rng(asked.seed, "household tasks").sample(left, len(left))
+    until = float("inf") if asked.minutes is None else began + 60 * asked.minutes
     with asked.out.open("a") as file:
         for task_id in left:
+            if time.perf_counter() > until:
+                break
             before.append(line := checked(task_id, known, asked.leaks))
             file.write(json.dumps(line) + os.linesep)
             file.flush()
     summary(before)
     if left:
-        print(f"{len(left):,} tasks checked in {time.perf_counter() - began:,.0f} s")
+        print(f"{len(before) - len(done):,} tasks checked in {time.perf_counter() - began:,.0f} s")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from hearth.challenges.instruction_object_names import EVERY, NUMBERS, Counted
 from hearth.challenges.paraphrase_things import UNSAID, Known, known_nouns, patterns, place, things
+from hearth.challenges.request_reader import read_request
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import HOLDS, Literal, Name
@@ -55,16 +56,9 @@ def read_paraphrase(text: str, knowledge: Knowledge, doer: str, names: frozenset
     """Return the goal of an instruction in a person's words; None where some of it is not understood."""
     if len(text) > LONGEST:
         return None
+    text = text.lower().replace("\u2019", "'")
     reader = _Paraphrase(known_nouns(knowledge, names), knowledge, doer)
-    clauses: list[Clause] = []
-    for sentence in _SENTENCES.split(text.lower().replace("\u2019", "'")):
-        if not sentence.strip():
-            continue
-        found = reader.clauses(" ".join(sentence.split()), tuple(clauses))
-        if found is None:
-            return None
-        clauses = list(found)
-    return _joined(clauses)
+    return reader.goal(text) or read_request(text, reader.known, knowledge, doer, reader.relation)
 
 
 def _joined(clauses: list[Clause]) -> Goal | None:
@@ -130,6 +124,18 @@ class _Paraphrase:
         self.known, self.knowledge, self.doer = known, knowledge, doer
         self.people, self.tried = 1, 0
 
+    def goal(self, text: str) -> Goal | None:
+        """Return the goal of a text in lower case; None where some of it is not understood."""
+        clauses: list[Clause] = []
+        for sentence in _SENTENCES.split(text):
+            if not sentence.strip():
+                continue
+            found = self.clauses(" ".join(sentence.split()), tuple(clauses))
+            if found is None:
+                return None
+            clauses = list(found)
+        return _joined(clauses)
+
     def clauses(self, text: str, before: Clauses) -> Clauses | None:
         """Return the clauses before and those of a text; the fewest that leave no word over, or None."""
         text = _plain(text)
@@ -178,6 +184,8 @@ class _Paraphrase:
         at = place(slots["place"], self.known) if "place" in slots else ""
         if some is None or at is None:
             return None
+        if kind not in _OFF and re.search(r"\b(?:or|nor)\b", slots.get("things") or ""):
+            return None  # one of two things is another goal
         if kind not in _OFF and any(number in (UNSAID, EVERY) for _, number in some):
             return None
         return _READERS[kind](self, _Said(kind, some, at, slots, before))

@@ -45,13 +45,17 @@ def known_nouns(knowledge: Knowledge, names: frozenset[str] = frozenset()) -> Kn
     classes = [*sorted(names), *knowledge.objects]
     for name in classes:
         spaced = name.replace("_", " ")
-        one.setdefault(spaced, name)
-        many.setdefault(plural(spaced), name)
+        one.setdefault(spaced, _own(name, knowledge, names))
+        many.setdefault(plural(spaced), _own(name, knowledge, names))
     for spelling in knowledge.object_spellings:
         found = knowledge.object_class(spelling)
         if found is not None and found.name in knowledge.objects:
             one.setdefault(spelling.replace("_", " "), found.name)
             many.setdefault(plural(spelling.replace("_", " ")), found.name)
+    for word, name in patterns()["nouns"].items():
+        if name in knowledge.objects:
+            one.setdefault(word, name)
+            many.setdefault(plural(word), name)
     for name in classes:
         _, of, rest = noun(name).partition(" of ")
         if of:
@@ -89,6 +93,14 @@ def things(text: str, known: Known, people: int = 1) -> Counted | None:
 def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
     each = _EACH.search(text)
     text = _EACH.sub("", text)
+    if (of := _ONE_OF.match(text)) and (name := _meant(text[of.end() :], known.many)):
+        return name, 1
+    if part := _PART.fullmatch(text):  # `two packs of pasta`
+        counted = _number(part[1].strip()) if part[1] else 1
+        vessel = text[: part.start(2)].split()[-2].removesuffix("s")
+        name = _meant(f"{part[2]} {vessel}", known.one) or _meant(part[2], known.one) or _meant(part[2], known.many)
+        if name is not None and counted and not _whole(text, known):
+            return name, counted
     for words, number in _determined(text):
         several = number > 1 or number in (EVERY, UNSAID)
         name = _meant(words, known.one) if number in (1, UNSAID, EVERY) else None
@@ -99,6 +111,27 @@ def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
         if name is not None:
             return name, number if number in (EVERY, UNSAID) else number * (people if each else 1)
     return None
+
+
+def _whole(text: str, known: Known) -> bool:
+    """Return whether the words with their container are a noun of ours, `bottle of water`."""
+    names = (words for words, _ in _determined(text) if " of " in words)
+    return any(_meant(words, known.one) or _meant(words, known.many) for words in names)
+
+
+def _number(words: str) -> int:
+    """Return the number of a determiner; 0 where it is none."""
+    found = patterns()["numbers"].get(words, 0)
+    if found:
+        return 1 if found == UNSAID else int(found) if found > 0 else 0
+    return NUMBERS.index(words) if words in NUMBERS[1:] else 0
+
+
+_ONE_OF = re.compile(r"one of (?:the|my|our|your) ")
+_PART = re.compile(
+    r"((?:[a-z]+ )*?)(?:pack|packet|package|box|bottle|carton|pair|piece|sheet|roll|jar|can|tin|bag|tub|tube|slice|bit"
+    r"|glass|bar|loaf|block|bunch|set|stick)(?:e?s)? of ([a-z' -]+)"
+)
 
 
 def _determined(text: str) -> list[tuple[str, int]]:

@@ -38,7 +38,8 @@ class EpisodeTurn:
         total: of all ticks.
         won: whether the goal is reached.
         truncated: whether time is over and the goal is not reached.
-        goal_fraction: the part of the goal that is reached, 0 to 1.
+        goal_fraction: the part of the goal that is reached, 0 to 1; 0 once a ban of it was broken.
+        broken: the bans of the goal that were broken; then it can't be reached any longer.
         ticks: how many have passed.
         faults: how many commands were refused.
         fault: the reason for the last refusal (`code`, `message`, `remedy`), or None.
@@ -53,6 +54,7 @@ class EpisodeTurn:
     won: bool
     truncated: bool
     goal_fraction: float
+    broken: tuple[str, ...]
     ticks: int
     faults: int
     fault: dict[str, str] | None
@@ -206,6 +208,7 @@ class TextEpisode:
             won=info["won"],
             truncated=truncated,
             goal_fraction=float(info["goal_fraction"]),
+            broken=tuple(info["broken"]),
             ticks=info["ticks"],
             faults=info["faults"],
             fault=info["fault"],

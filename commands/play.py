@@ -51,10 +51,10 @@ def play(
 ) -> None:
     """Play an episode in a home until a goal is reached, with agents of any kind.
 
-    An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal), `listen` or `listen:PORT`
-    (a program that connects to that port of this machine), `stdio` (the program that runs this command), a language
-    model (llm:MODEL@URL), or `wait`, as agents that are not named do. docs/examples/agents.md describes the messages.
-    The status is 1 if the goal is not reached.
+    An agent is a command that reads and writes lines of JSON, `text` (you, at this terminal: `help`), `listen` or
+    `listen:PORT` (a program that connects to that port of this machine), `stdio` (the program that runs this command),
+    a language model (llm:MODEL@URL), or `wait`. Agents that are not named wait. docs/examples/agents.md describes the
+    messages. The status is 1 if the goal is not reached.
 
     \b
     Examples:
@@ -77,7 +77,8 @@ def play(
     if scene.instruction and not quiet:
         output.note(f"{task}: {scene.instruction}")
     with ExitStack() as stack:
-        how = _How(ticks, within, form, messages, images, as_json, _transcript(transcript, stack))
+        kept = _transcript(transcript, stack)
+        how = _How(ticks, within, form, messages, images, as_json, kept, scene.instruction)
         playing = [_agent(seat, how, stack) for seat in seats]
         played = _play(scene, playing, seed, how, _actions(actions or scene.actions, known), not full)
         for each in playing:
@@ -107,6 +108,7 @@ class _How(NamedTuple):
     images: bool
     as_json: bool
     keep: Callable[[Mapping[str, Any]], None]
+    instruction: str = ""
 
 
 PLAYED = "played"
@@ -139,10 +141,10 @@ def _seats(given: list[str]) -> list[_Seat]:
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
     from hearth.challenges.wire_protocol import WireAgent
-    from hearth.envs.text_agent import TextAgent
+    from hearth.envs.terminal_agent import TerminalAgent
 
     if seat.spec == TEXT:
-        return TextAgent(_asked_at_terminal(how.as_json), how.keep, how.messages)
+        return TerminalAgent(_asked_at_terminal(how.as_json), how.keep, how.messages, how.instruction)
     if seat.spec == WAIT:
         return Waiting()
     if seat.spec.startswith(MODEL):
@@ -275,6 +277,7 @@ def _home_scene(
     home: str, goal: list[str] | None, graph: Path | None, homes: Path | None, known: Any, agents: int, seed: int
 ) -> _Scene:
     """Return a home as it is, and the goals of the command line."""
+    from hearth.envs.session import need_something_to_do
     from hearth.simulation.env import Env
     from hearth.simulation.rules import DEFAULT
 
@@ -282,6 +285,7 @@ def _home_scene(
         raise typer.BadParameter("name a home and a --goal, or a --task")
     place = read_home(home, graph, homes, known)
     wanted = read_goals(goal, place)
+    need_something_to_do(wanted)
     env = Env()
     env.reset(place, agents, seed)
     return _Scene(home, env.world, wanted, DEFAULT)

@@ -54,7 +54,10 @@ def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuz
     with recognizing(known):
         programs = list(inputs.read_programs(path, known, name, "", fuzzy))
     for found in programs:
-        if isinstance(found, Reject):
+        if isinstance(found, Reject) and _is_blank_plan(found):
+            number += 1
+            yield Pair(str(number), (), (), found.diagnostics[0].line, {}, referenced=False)
+        elif isinstance(found, Reject):
             rejects.reject(found.diagnostics)
         elif not found.program.steps and all(fault.code is Code.EMPTY for fault in found.faults):
             rejects.reject(found.faults)
@@ -64,6 +67,11 @@ def _programs(path: Path, known: Knowledge, name: str, rejects: FirstFaults, fuz
             more = {"title": found.program.title}
             fuzzy_steps = sum(each.code is Code.FUZZY_MATCH for each in found.warnings)
             yield Pair(str(number), _lines(found), (), first, more, referenced=False, fuzzy=fuzzy_steps)
+
+
+def _is_blank_plan(reject: Reject) -> bool:
+    """Return whether a record has a field for its plan and nothing in it, which scores as an empty prediction."""
+    return any(fault.code is Code.EMPTY and fault.found for fault in reject.diagnostics)
 
 
 def _lines(given: inputs.Given) -> tuple[Line, ...]:

@@ -14,6 +14,7 @@ from typing import Any
 
 from hearth.agents.protocol import Choice
 from hearth.envs.json_observations import instruction_text, seen_instances
+from hearth.envs.places_to_look import places_to_look
 from hearth.kb.action_grammar import check
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.agent_messages import ASK, TELL, Message
@@ -208,7 +209,7 @@ def _bound(ref: ObjectRef, view: View) -> ObjectRef:
         found = ref.instance if counted is None and ref.instance in seen else counted
     if found is None:
         number = ref.node if ref.node is not None else ref.instance or ""
-        remedy = f"you see {', '.join(map(str, seen[:8]))}" if seen else "you see none"
+        remedy = f"you see {', '.join(map(str, seen[:8]))}" if seen else places_to_look(ref.name, view)
         raise HearthError.of(Code.NOT_SEEN, f"you do not see `{ref.name}` {number}".rstrip(), suggestion=remedy)
     return ObjectRef(home.classes[home.index[found]], 0, found)
 

@@ -5,7 +5,7 @@ Everything here depends on the seen nodes alone, and no name changes from tick t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, lru_cache
 
 from hearth.envs.json_observations import named_nodes, seen_failure, seen_goal
@@ -41,6 +41,9 @@ their classes, so that a place only says how many they are, and commands about f
 
 CUT = " ..."
 """The end of a text that was cut."""
+
+OUT_OF_REACH = "The goal can't be reached any longer"
+"""Said below the goal where a ban of it was broken."""
 
 IN_SHORT = " In short: "
 """Between a person's own words and the instruction that says the same."""
@@ -78,7 +81,15 @@ def _wanted_terms(goal: Goal, home: Home) -> tuple[int, tuple[tuple[int, ...], .
 
 
 def compact(
-    view: View, legal: Legal, goal: Goal, protocol: Protocol, task: str = "", last: str = "", *, stopped: bool = False
+    view: View,
+    legal: Legal,
+    goal: Goal,
+    protocol: Protocol,
+    task: str = "",
+    last: str = "",
+    *,
+    stopped: bool = False,
+    broken: Sequence[str] = (),
 ) -> str:
     """Return an observation of at most `protocol.most` characters.
 
@@ -90,9 +101,12 @@ def compact(
         task: the goal as somebody says it; put into words where empty.
         last: a note about the last command, instead of the view's own.
         stopped: whether the last command, a walk, ended early because something wanted came into sight.
+        broken: the bans of the goal that were broken, which puts it out of reach.
     """
     writer = _Writer(view, legal, goal, protocol, stopped)
     head = [writer.goal(task), writer.me(), *writer.others()]
+    if broken:
+        head.insert(1, _cut(f"Broken: {printable('; '.join(broken))}. {OUT_OF_REACH}.", protocol.most_last))
     if note := last or writer.last():
         head.append(f"Last: {_cut(printable(note), protocol.most_last)}")
     return _cut(_within(writer, "\n".join(head), protocol.usual), protocol.most)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from hearth.schemas.goals import LASTING, Goal, Joined
+from hearth.schemas.goals import BANS, Goal, Joined
 from hearth.schemas.program import Step
 from hearth.simulation.goals import Progress
 from hearth.simulation.observation.views import View
-
-BANS = ("not", *LASTING)
-"""The words of parts that are kept or broken: nothing of them is done by and by."""
 
 OUT_OF_REACH = "the goal can't be reached any longer"
 """Said where a part of a goal is lost, to people and to agents."""

@@ -59,7 +59,8 @@ def opening(
         strides: metres that each walks in a tick; 1 where not given.
 
     Raises:
-        HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no home or goal; every fault of a goal's text.
+        HearthError: UNKNOWN_HOME; BAD_ARGUMENT: no home or goal, or a goal that only forbids; every fault of a goal's
+            text.
     """
     several: Any = home if isinstance(home, Sequence) and not isinstance(home, str) else [home]
     homes = tuple(_empty(each) for each in several)
@@ -68,7 +69,21 @@ def opening(
         message = f"{len(homes)} homes and {len(given)} goals"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion='opening("maple", "HOLDS(agent, milk)")')
     goals = tuple(read_goal(each, homes[0].home) if isinstance(each, str) else each for each in given)
+    for each in goals:
+        need_something_to_do(each)
     return HomeOpening(homes, goals, agents, strides)
+
+
+def need_something_to_do(goal: Goal) -> None:
+    """Refuse a goal that only forbids: it holds at the start, so that the episode would be won before it begins.
+
+    Raises:
+        HearthError: BAD_ARGUMENT.
+    """
+    if goal.only_forbids:
+        message = f"the goal `{str(goal)[:80]}` only forbids: it holds at the start, and nothing is left to do"
+        remedy = f"add what is to be done, as in `HOLDS(agent, milk) and {str(goal)[:80]}`"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
 
 
 @dataclass(frozen=True)

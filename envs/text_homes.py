@@ -253,6 +253,7 @@ class TextHomes:
             "id": now.task.id,
             "won": now.won,
             "goal_fraction": now.progress.fraction,
+            "broken": [str(part) for part in now.progress.broken],
             "admissible": Admissible(place.shown[1]),
             "fault": None if fault is None else _fault(fault),
             "faults": now.faults,

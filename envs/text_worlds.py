@@ -151,7 +151,8 @@ def observed(now: TextWorld, play: Play, shown: tuple[View, Legal] | None = None
     may = shown or seen(now, play)
     note = "" if now.fault is None else f"refused, you waited. {reason(now.fault)}"
     task = getattr(now.task, "instruction", "")
-    return compact(*may, now.progress.goal, play.words, task, note, stopped=now.stopped)
+    broken = tuple(map(str, now.progress.broken))
+    return compact(*may, now.progress.goal, play.words, task, note, stopped=now.stopped, broken=broken)
 
 
 def reason(fault: Diagnostic) -> str:

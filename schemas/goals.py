@@ -53,6 +53,9 @@ class Joined:
 LASTING = ("always", "never")
 """The words of goals about every time up to the end."""
 
+BANS = ("not", *LASTING)
+"""The words of parts that are kept or broken: nothing of them is done by and by."""
+
 
 @dataclass(frozen=True, slots=True)
 class Goal:
@@ -102,6 +105,11 @@ class Goal:
         """Return whether some of its parts are about every time up to the end."""
         return any(part.join in LASTING or any(goal.lasts for goal in part.goals) for part in self.parts)
 
+    @property
+    def only_forbids(self) -> bool:
+        """Return whether it asks for nothing to be done: all of it are bans, which hold until they are broken."""
+        return bool(self.parts) and not self.counts and all(map(_forbids, self.parts))
+
     def bound(self, variable: str, node: int) -> Goal:
         """Return the goal with a node instead of a variable."""
         counts = ((lit._replace(terms=tuple(node if t == variable else t for t in lit.terms)), n) for lit, n in self)
@@ -112,6 +120,12 @@ class Goal:
         counted = (_text(literal) + (f": {number}" if number != 1 else "") for literal, number in self)
         parts = (f"({part})" if self.counts or self.parts[1:] else str(part) for part in self.parts)
         return " and ".join((*counted, *parts))
+
+
+def _forbids(part: Joined) -> bool:
+    """Return whether a part is about every time, or about acts that are never done; `not OPEN(fridge)` is a state."""
+    acts = all(not literal.name.isupper() for goal in part.goals for literal, _ in goal.literals())
+    return part.join in LASTING or (part.join == "not" and acts)
 
 
 def _text(literal: Literal[Name]) -> str:

@@ -12,7 +12,7 @@ from operator import is_
 from hearth.schemas.call_errors import explained
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.goals import Goal
+from hearth.schemas.goals import BANS, Goal, Joined
 from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import AGENT, HANDS, HOLDS, Literal, Name
 from hearth.schemas.program import Step
@@ -154,6 +154,11 @@ class Progress:
         return tuple(map(self.trace.lost, self.goal.parts)) if self.trace else ()
 
     @cached_property
+    def broken(self) -> tuple[Joined, ...]:
+        """Return the bans that were broken, each for good; of a goal `F within n`, time is over and nothing broken."""
+        return tuple(part for part, lost in zip(self.goal.parts, self.lost, strict=False) if lost and part.join in BANS)
+
+    @cached_property
     def satisfied(self) -> bool:
         """Return whether every literal holds as often as is wanted, and every part is reached.
 
@@ -163,7 +168,12 @@ class Progress:
 
     @cached_property
     def fraction(self) -> float:
-        """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal."""
+        """The satisfied share of the required counts and parts, from 0 to 1; 1 for an empty goal.
+
+        0 once a ban was broken, as no part of such a goal helps any longer.
+        """
+        if self.broken:
+            return 0.0
         wanted = sum(count for _, (_, count) in self.required()) + len(self.goal.parts)
         found = sum(min(count, most) for count, (_, most) in self.required()) + sum(self.has)
         return found / wanted if wanted else 1.0

@@ -57,7 +57,7 @@ THIRD_PARTY: dict[str, Script] = {
 THREE = "/fetched/three/build/three.module.js"
 """The address that scripts import three.js from."""
 
-REMEDY = "run `make web` (it needs npm)" if CHECKOUT.is_file() else "install a wheel that was built after `make web`"
+REMEDY = "run make web (it needs npm)" if CHECKOUT.is_file() else "install a wheel that was built after make web"
 
 
 def missing() -> list[str]:

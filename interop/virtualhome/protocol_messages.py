@@ -125,7 +125,8 @@ def json_of(text: str | bytes, place: str) -> dict[str, Any]:
 
 def wrong(field: str, expected: str, found: object) -> HearthError:
     """Return the refusal of a field of a wrong kind; the value is repeated in part."""
-    return HearthError.of(Code.BAD_ARGUMENT, f"`{field}` takes {expected}, not {found!r:.60}")
+    value = "nothing" if found is None else f"{found!r:.60}"
+    return HearthError.of(Code.BAD_ARGUMENT, f"`{field}` takes {expected}, not {value}")
 
 
 def number(settings: Mapping[str, Any], name: str, default: float, low: float, high: float) -> float:

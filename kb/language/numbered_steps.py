@@ -264,7 +264,7 @@ class _StepParser:
         names = tuple(ref.name for ref in self.steps[at].objects) if at is not None else ()
         if at is not None and names and (out := left_out(self.known, words, names[0], self.steps[:at])):
             step = say(self.known.actions[self.steps[at].action], names)
-            message = f"taken for `{step}`; left out: {out}, as the plan has not gone there"
+            message = f"taken for `{step}`; no step goes there: {out} (`run --sample` takes it for the start)"
             self.warnings.append(self._writer.at(Code.FUZZY_MATCH, message, raw, words, number))
 
     def _take_back(self, number: int) -> None:

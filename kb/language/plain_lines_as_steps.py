@@ -5,7 +5,15 @@ import re
 from hearth.kb.language.forms.form import Placed
 from hearth.kb.language.plan_lines import META, PlanLine
 from hearth.kb.language.prose import Sentence, goes_on, is_farewell, is_greeting, is_prose, sentences_of
-from hearth.kb.language.step_like_lines import are_steps, chained, is_like_step, is_title, reads_as_step, sentences
+from hearth.kb.language.step_like_lines import (
+    are_steps,
+    chained,
+    is_like_step,
+    is_sure_step,
+    is_title,
+    reads_as_step,
+    sentences,
+)
 from hearth.kb.language.title_marks import doubted
 from hearth.schemas.program_boundaries import is_sentence
 
@@ -30,7 +38,8 @@ def marked(placed: list[Placed]) -> list[Placed]:
     if is_prose(prose):
         return _as_sentences(placed, plain, sentences_of(prose))
     texts = [_after_label(placed[n].line.text) for n in plain]
-    if not are_steps(texts) and not (is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])):
+    is_below_title = is_titled and len(texts) == 1 and _is_order(texts[0], placed[plain[0]])
+    if not (are_steps(texts) or is_below_title or _is_only_step(placed, texts)):
         return placed
     for n, why in doubted(placed, plain):
         placed = [*placed[:n], Placed(placed[n].row, placed[n].line._replace(why=why)), *placed[n + 1 :]]
@@ -83,6 +92,11 @@ def _after_label(text: str) -> str:
 def _is_order(text: str, placed: Placed) -> bool:
     """Return whether the one line below a title is a step, and not its description."""
     return text != placed.line.text or (is_like_step(text) and (not is_sentence(text) or reads_as_step(text)))
+
+
+def _is_only_step(placed: list[Placed], texts: list[str]) -> bool:
+    """Return whether the only line of a text is a step, `Grab the milk`, and not a title whose steps are missing."""
+    return len(texts) == sum(bool(line.text) for _, line in placed) == 1 and is_sure_step(texts[0])
 
 
 def _steps_on(placed: Placed) -> list[Placed]:

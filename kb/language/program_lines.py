@@ -22,6 +22,7 @@ from hearth.kb.language.step_like_lines import (
     chained_strongly,
     is_like_step,
     is_order,
+    is_sure_step,
 )
 from hearth.kb.language.steps_in_a_line import listed
 from hearth.kb.language.title_marks import is_part
@@ -161,8 +162,10 @@ def is_plan(lines: Sequence[str]) -> bool:
 
 
 def _has_one_item(lines: Sequence[str]) -> bool:
-    """Return whether a title stands above a list of one step."""
+    """Return whether a list has one step, alone or below a title."""
     texts = [line for line in map(plan_line, lines) if line.text]
+    if len(texts) == 1 and texts[0].number is not None:
+        return is_sure_step(texts[0].text)
     return len(texts) == _TITLED and texts[0].number is None and texts[1].number == 0 and is_order(texts[1].text)
 
 

@@ -222,5 +222,14 @@ def reads_as_step(text: str) -> bool:
     return any(all(map(known.object_class, names)) for _, names in parses(known, text))
 
 
+def is_sure_step(text: str) -> bool:
+    """Return whether a line alone is a step, `Grab the milk`, or several, `Put the milk in the fridge and close it`."""
+    first, *more = _AND.split(text)
+    return reads_as_step(text) or (bool(more) and reads_as_step(first) and all(map(is_like_step, more)))
+
+
+_AND = re.compile(r",? (?:and then|and|then) ", re.IGNORECASE)
+
+
 def _are_steps(parts: Sequence[str]) -> bool:
     return sum(map(is_like_step, parts)) >= _WHOLE * len(parts)

@@ -205,7 +205,8 @@ def _row(item: Item, value: Mapping[str, Any], salt: str) -> IngestedRow | Rejec
         empty = guessed(names, {}).get("program")
         lacks_plan = f"`{empty}` is empty: " if empty and _is_blank(value.get(empty)) else ""
         message = f"{lacks_plan}neither steps nor a description; its keys are {', '.join(names)[:200] or 'none'}"
-        return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, suggestion=_FORM)
+        blank = empty if lacks_plan and empty else ""
+        return Reject.of(Code.EMPTY, message, file=item.place, line=item.line, found=blank, suggestion=_FORM)
     top = header if not in_sentences else plan_header
     title, description = top(text) if text and "steps" not in value else ("", "")
     origin = _word(value, "origin") or NAME

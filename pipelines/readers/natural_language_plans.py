@@ -10,7 +10,7 @@ from hearth.kb.language.forms.form import Form
 from hearth.kb.language.line_decorations import bare, raw_of
 from hearth.kb.language.plan_lines import META, RULE, PlanLine, is_answer, is_aside, level_of, plan_line
 from hearth.kb.language.program_lines import Titles, header, is_unmarked, reading_of, titled, titles_of
-from hearth.kb.language.step_like_lines import are_steps, is_order, names_task
+from hearth.kb.language.step_like_lines import are_steps, is_order, is_sure_step, names_task
 from hearth.pipelines.readers.document_titles import without_document_titles
 from hearth.pipelines.readers.json_elements import located_entries
 from hearth.pipelines.readers.reader_items import Item, fault_of, lines, record, refused
@@ -34,10 +34,19 @@ _LOOKED_AT = 60
 def scan(path: Place, place: str) -> Iterator[Item]:
     """One item for each program of a text, or for each text of a JSON list."""
     numbered = ((number, line) for number, (line, _) in enumerate(lines(path), 1))
-    for number, block in without_document_titles(_programs(numbered)):
+    found = without_document_titles(_programs(numbered))
+    start = list(itertools.islice(found, 2))
+    for number, block in itertools.chain(start, found):
         text = "\n".join(map(raw_of, block))
+        text = _as_title(text) if len(start) > 1 else text
         record_id = f"{NAME}:{place}" if number == 1 else f"{NAME}:{place}:{number}"
         yield checked(text, number, record_id, place)
+
+
+def _as_title(text: str) -> str:
+    """Return a program of one line next to others, marked as a title: alone it would be read as a step."""
+    line = text.strip()
+    return f"Task: {line}" if "\n" not in line and is_sure_step(line) else text
 
 
 def starts_of(text: str) -> list[int]:

@@ -221,13 +221,9 @@ class Batch:
         """
         given = np.asarray(numbers)
         good = given.size == self._numbers.size and np.issubdtype(given.dtype, np.integer)
-        scalar = self.table.first_plane
-        bad = not good or given.min() < 0 or given.max() >= self.size
-        if not bad and not ((given < FIRST_NODE_NUMBER) & (given >= scalar)).any():
+        if good and given.min() >= 0 and given.max() < self.size:
             return
-        message = (
-            f"actions are {self._numbers.size} integers below {scalar}, or from {FIRST_NODE_NUMBER} below {self.size}"
-        )
+        message = f"actions are {self._numbers.size} integers from 0 to {self.size - 1}"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="legal ones have 1 in `mask`")
 
     def _run(self, job: int, level: int, which: NDArray[np.int64]) -> None:

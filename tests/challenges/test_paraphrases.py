@@ -43,6 +43,42 @@ def test_most_are_read_and_none_is_misread(knowledge, file, number):
     assert found.count("right") >= 0.85 * number
 
 
+def test_requests_of_another_author_are_read(knowledge):
+    """At first sight 28 of these 100 were read; `remote` is another name of the class in the goal."""
+    found = [(outcome(goal, text, knowledge), text) for goal, text in pairs("requests_of_another_author.txt")]
+    assert len(found) == 100 and sum(each == "right" for each, _ in found) >= 90
+    assert [text for each, text in found if each == "wrong" and "a remote" not in text] == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Take the plates off the table.",
+        "There should be no plates on the table.",
+        "Put a plate on the table, not on the sofa.",
+        "Hands off the fridge.",
+        "Take two plates, one on the table and one in the sink.",
+        "Leave the fridge open and the milk in it.",
+        "Get the milk out of the fridge.",
+        "Put a plate or a cup on the table.",
+        "Put a plate on the table or in the sink.",
+        "Take the milk or the juice.",
+        "Have no milk in your hand.",
+        "Don't hold a cup.",
+        "The milk should not be on the table.",
+        "Sit on the bed with a book.",
+        "Put the cup next to the plate.",
+        "On the kitchen table, please.",
+        "Hold a cup on the table.",
+        "Put one more plate on the table.",
+    ],
+)
+def test_what_means_something_else_is_refused(knowledge, text):
+    with pytest.raises(HearthError) as caught:
+        read_instruction(text, knowledge)
+    assert caught.value.diagnostics[0].code is Code.SYNTAX
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -80,6 +116,17 @@ def test_what_is_not_understood_whole_is_refused(knowledge, text):
     [
         ("Take the broom in your hands.", "HOLDS(agent, broom)"),
         ("Find the milk.", "HOLDS(agent, milk)"),
+        (
+            "I'd love two plates on the kitchen table, and a floor lamp on.",
+            "ON(plate, kitchen_table): 2 and ON(floor_lamp)",
+        ),
+        ("Have a seat on the bed, with a book in your hand.", "ON(agent, bed) and HOLDS(agent, book)"),
+        (
+            "Kill all table lamps. Whatever you do, don't open the fridge.",
+            "not ON(tablelamp) and (not ([Open](fridge)))",
+        ),
+        ("Dress up the sideboard with two packs of napkins.", "ON(napkin, sideboard): 2"),
+        ("Take a book and open it.", "HOLDS(agent, book) and OPEN(book)"),
         ("It's late. Turn off all lamps.", "not ON(lamp)"),
         ("The milk goes in the fridge; the towels, both of them, are fine.", ""),
         ("Set the table for three with a plate and a fork.", "ON(plate, table): 3 and ON(fork, table): 3"),

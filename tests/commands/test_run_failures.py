@@ -214,3 +214,17 @@ def test_no_place_is_said_in_plain_words():
     held = EnvironmentGraph((*after.nodes, Node(3, "character", "Characters", (), ())), (Edge(3, "HOLDS_RH", 1),))
     assert additions(after, held).objects[0].class_name == "character"
     assert additions(before, held).objects[0].place == "held by character (3)"
+
+
+@pytest.mark.parametrize(
+    ("steps", "advice"),
+    [
+        ("[Grab] <milk> (1)\n", "walk to the milk and open the fridge first"),
+        ("[Walk] <fridge> (1)\n[Grab] <milk> (1)\n", "open the fridge first"),
+        ("[SwitchOn] <television> (1)\n", "walk to the television first"),
+    ],
+)
+def test_all_steps_that_are_missing_are_advised_at_once(tmp_path, steps, advice):
+    (tmp_path / "a.txt").write_text(f"Title\n\n\n{steps}")
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "a.txt"), "--home", "maple"])
+    assert done.exit_code == 1 and f"; {advice} (" in done.stdout

@@ -37,13 +37,28 @@ def legal(observation, rng, key="mask"):
 
 def test_it_is_a_vector_environment(homes):
     assert isinstance(homes, gymnasium.vector.VectorEnv) and homes.num_envs == 16
-    homes.action_space.seed(3)  # a draw may be of the numbers between both kinds of actions, which are refused
     observation, infos = homes.reset(seed=3)
     assert homes.observation_space.contains(observation) and infos == {}
     observation, rewards, terminated, truncated, infos = homes.step(homes.action_space.sample())
     assert homes.observation_space.contains(observation)
     assert rewards.shape == terminated.shape == truncated.shape == (16,) and terminated.dtype == truncated.dtype == bool
     assert infos["refused"].shape == (16,) and homes.metadata["autoreset_mode"].value == "SameStep"
+
+
+def test_every_number_of_the_space_can_be_given(homes):
+    """Those between actions without objects and the others are refused as illegal ones are, for one tick."""
+    homes.reset(seed=3)
+    before = homes.worlds.arrays(0)["places"].copy()
+    first = homes.worlds.batch.table.first_plane
+    gap = np.arange(first, 64)
+    assert len(gap)
+    for number in (gap[0], gap[-1]):
+        observation, rewards, _, _, infos = homes.step(np.full(16, number))
+        assert infos["refused"].all() and (rewards < 0).all() and not observation["mask"][:, number].any()
+    np.testing.assert_array_equal(observation["places"], before)
+    homes.action_space.seed(0)
+    for _ in range(30):
+        homes.step(homes.action_space.sample())
 
 
 def test_wrappers_of_gymnasium_count_returns_and_lengths(homes):

@@ -228,7 +228,7 @@ def test_a_fault_in_yaml_stands_at_its_place(write):
     [
         ("settings.yaml",
          "name: CI\ndescription: Build\njobs:\n  build:\n    steps:\n    - name: x\n      run: y\n", "YAML"),
-        ("a.html", "<!DOCTYPE html>\n<ol><li>Walk to lamp</li></ol>\n", "HTML"),
+        ("a.html", "<!DOCTYPE html>\n<div>Walk to lamp</div>\n", "HTML"),
         ("a.xml", '<?xml version="1.0"?>\n<plan><step>Walk to lamp</step></plan>\n', "XML"),
         ("a.txt", "{\\rtf1 Walk to lamp}\n", "RTF"),
     ],

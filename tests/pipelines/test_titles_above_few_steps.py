@@ -3,6 +3,9 @@
 import pytest
 from test_forms_of_text import programs
 
+from hearth.pipelines.readers import program_text
+from hearth.pipelines.readers.recognition_by_content import recognise
+
 ONE = {
     "apart": ("Watch TV\n\nTurn on the TV.\n", "Watch TV", "[SwitchOn] <television> (1)"),
     "a letter": ("T\nSit down on the sofa.\n", "T", "[Sit] <sofa> (1)"),
@@ -63,3 +66,23 @@ def test_a_title_without_steps_is_refused_and_takes_no_steps_of_another(write, k
 def test_a_description_below_a_title_begins_no_program(write, knowledge, second):
     ((title, steps, *_),) = programs(write, knowledge, f"Make coffee\n\n{second}\n{LIST}")
     assert (title, len(steps)) == ("Make coffee", 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "steps"),
+    [
+        ("Grab the milk\n", ["[Grab] <milk> (1)"]),
+        ("turn on the tv", ["[SwitchOn] <television> (1)"]),
+        ("- Grab the milk.\n", ["[Grab] <milk> (1)"]),
+        ("1. Grab the milk\n", ["[Grab] <milk> (1)"]),
+        ("Open the fridge and close it\n", ["[Open] <fridge> (1)", "[Close] <fridge> (1)"]),
+    ],
+)
+def test_the_only_line_of_a_text_is_a_step_where_it_reads_as_one(write, knowledge, text, steps):
+    ((title, found, faults, _),) = programs(write, knowledge, text)
+    assert (title, found, faults) == ("", steps, [])
+
+
+@pytest.mark.parametrize("text", ["Make coffee\n", "Breakfast\n", "A lazy evening\n"])
+def test_the_only_line_of_a_text_is_a_title_where_it_is_no_step(write, text):
+    assert [entry.reader for entry in recognise(write("plan.txt", text), "plan.txt")] == [program_text.NAME]

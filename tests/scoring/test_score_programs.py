@@ -213,3 +213,12 @@ def test_a_refused_line_of_a_loop_stands_once_at_its_place(score, tmp_path):
     (tmp_path / "plan.py").write_text('for i in range(2):\n    walk("fridge")\n    fly("fridge")\nopen("fridge")\n')
     found = json.loads(score("program", "plan.py", "--home", "maple", "--json").stdout)
     assert (found["count"], found["codes"]) == (1, {"UNKNOWN_ACTION": 1})
+
+
+@pytest.mark.parametrize("blank", ['""', "[]", "null", '" "'])
+def test_a_blank_plan_of_a_record_is_an_empty_prediction(score, tmp_path, blank):
+    """One rule for rows with and without references: it counts in the means as a program that can't be parsed."""
+    rows = f'[{{"id": "1", "plan": {blank}}}, {{"id": "2", "plan": ["Walk to the fridge"]}}]'
+    (tmp_path / "a.json").write_text(rows)
+    found = json.loads(score("program", "a.json", "--json").stdout)
+    assert (found["count"], found["empty"], found["mean"]["parsable"]["mean"]) == (2, 1, 0.5)

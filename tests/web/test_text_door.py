@@ -107,6 +107,7 @@ def test_sixty_four_worlds_at_once_do_not_touch_each_other(client):
         ("POST", "/create", {"json": {"home": "../../etc", "goal": "x"}}, (400, "UNKNOWN_HOME")),
         ("POST", "/create", {"json": {"home": "maple"}}, (400, "BAD_ARGUMENT")),
         ("POST", "/create", {"json": {"home": "maple", "goal": "HOLDS("}}, (400, None)),
+        ("POST", "/create", {"json": {"home": "maple", "goal": "never OPEN(fridge)"}}, (400, "BAD_ARGUMENT")),
         ("POST", "/create", {"json": {"task": "wah"}}, (400, "BAD_ARGUMENT")),
         ("POST", "/create", {"content": b"[1]"}, (400, "BAD_JSON")),
         ("POST", "/create", {"content": b"{"}, (400, "BAD_JSON")),
@@ -126,6 +127,7 @@ def test_a_wrong_request_is_a_typed_fault(client, method, address, given, expect
     answer = client.request(method, address, **given)
     status, code = fault(answer)
     assert (status, code if expected[1] else None) == expected
+    assert answer.json()["error"]["place"], "each fault names the field or the address"
     assert (
         answer.headers["x-content-type-options"] == "nosniff"
         and "default-src 'none'" in answer.headers["content-security-policy"]

@@ -9,12 +9,11 @@ from typing import Any
 from hearth.challenges.instruction_object_names import label
 from hearth.challenges.instruction_writer import acted, instruction
 from hearth.envs.json_observations import last_json, seen_failure
-from hearth.envs.seen_bans import BANS
 from hearth.homes.geometry import footprint
 from hearth.kb.action_groups import relation_of
 from hearth.schemas.failure_words import sentence
 from hearth.schemas.failures import Failure
-from hearth.schemas.goals import Goal, Joined
+from hearth.schemas.goals import BANS, Goal, Joined
 from hearth.schemas.graph import Node
 from hearth.schemas.literals import AGENT, HOLDS
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, ROOM_CATEGORY, STATES

@@ -52,11 +52,13 @@ class OpenWorlds:
 
     def answer(self, asked: bytes) -> bytes:
         """Return the answer to one operation; every error becomes a fault, which the worlds outlive."""
+        operation = ""
         try:
             operation, world, *given = orjson.loads(asked)
             return DONE + orjson.dumps(self._operations[operation](world, *given))
         except Exception as error:
-            return REFUSED + orjson.dumps(fault_of(error).as_json()["error"])
+            fault = fault_of(error).as_json()["error"]
+            return REFUSED + orjson.dumps({**fault, "place": fault["place"] or f"/{operation}"})
 
     def _create(self, world: str, home: Any, goal: Any) -> dict[str, Any]:
         if home is None and goal is None:

@@ -61,6 +61,12 @@ def row_and_node(number, nodes, first_plane):
 
 
 @kernel
+def _is_action(number, first_plane):
+    """Return whether a number is an action at all; those between both kinds are refused, as illegal ones are."""
+    return number < first_plane or number >= FIRST_NODE_NUMBER
+
+
+@kernel
 def _field_row(home, task, world, field_rows, agent, node, doors, missing):
     """Return (number of the field of a walk, the only cell that it is about); the number is -1 where it is missing."""
     key, _ = target_of(home, task, world, node)
@@ -118,7 +124,7 @@ def tick(home, task, world, numbers, table, fields, missing, scratch, registers,
         world.restated = 0
         for agent in range(agents):  # each must be possible as the tick begins
             row, node = row_and_node(np.int64(numbers[agent]), nodes, first_plane)
-            world.possible[agent] = allowed(
+            world.possible[agent] = _is_action(np.int64(numbers[agent]), first_plane) and allowed(
                 home, task, world, agent, everything, rows[row], node, read, program, made_bed, cells, registers
             )
     status = np.int64(world.waiting >> 8)
@@ -129,7 +135,7 @@ def tick(home, task, world, numbers, table, fields, missing, scratch, registers,
         row, node = row_and_node(number, nodes, first_plane)
         now = world.possible[agent] != 0
         if agent > 0:
-            now = allowed(
+            now = _is_action(number, first_plane) and allowed(
                 home, task, world, agent, everything, rows[row], node, read, program, made_bed, cells, registers
             )
             stays = rows[row, MOVING] and not world.restated  # see `engine._only_moves`
