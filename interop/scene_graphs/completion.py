@@ -224,9 +224,10 @@ def with_doors(graph: EnvironmentGraph, first: int) -> tuple[EnvironmentGraph, i
     return replace(graph, nodes=(*graph.nodes, *doors), edges=(*graph.edges, *edges)), len(doors)
 
 
-def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> int:
-    """Return how many things of a graph with boxes nobody can walk to."""
-    return sum(1 for _ in CHECKS["on foot"](View(graph, knowledge)))
+def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> list[str]:
+    """Return the things of a graph with boxes that nobody can walk to, as `mug (7)`."""
+    names = {str(node.id): f"{node.class_name} ({node.id})" for node in graph.nodes}
+    return [names[fault.found] for fault in CHECKS["on foot"](View(graph, knowledge))]
 
 
 def without_boxes(graph: EnvironmentGraph) -> EnvironmentGraph:

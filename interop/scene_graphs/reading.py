@@ -79,7 +79,7 @@ def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> R
         name = completion.room_for([node.class_name for node in graph.nodes], knowledge)
         room = Node(_next(graph), name, ROOM_CATEGORY)
         graph = replace(graph, nodes=(*graph.nodes, room))
-        reading.note("rooms made, as the file has none", [name])
+        reading.note("rooms made, as no room of the file is known", [name])
     nodes = [completion.with_usual_fields(node, knowledge) for node in graph.nodes]
     changed = [new.class_name for new, old in zip(nodes, graph.nodes, strict=True) if new is not old]
     reading.note("things with properties or states from the knowledge", changed)
@@ -201,7 +201,7 @@ class _Reading:
         if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
             name = completion.room_for([entry.class_name for entry in entries], self.knowledge)
             found[""] = Entry(Entity("", (), name, name, {}), name)
-            self.note("rooms made, as the file has none", [name])
+            self.note("rooms made, as no room of the file is known", [name])
         return found
 
     def _edges(
