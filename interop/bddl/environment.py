@@ -123,7 +123,7 @@ class _Building:
             rooms = sorted({str(fact.terms[1]) for fact in self.problem.facts if _names_room(fact)})
             message = f"no room of ours stands for {', '.join(rooms)}" if rooms else "it names no room"
             raise HearthError.of(Code.NO_ROOM, message, file=self.problem.file,
-                                 suggestion="`(inroom floor.n.01_1 kitchen)` names a room that our homes have")  # fmt: skip
+                                 suggestion="`(inroom floor.n.01_1 kitchen)` is in one")  # fmt: skip
 
     def _make_nodes(self) -> None:
         stateful = {fact.terms[0] for fact in self.problem.facts if fact.predicate in words().substances and fact.terms}
