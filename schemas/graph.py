@@ -110,12 +110,23 @@ def from_release(data: Mapping[str, Any], file: str = "") -> EnvironmentGraph:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise HearthError.of(
             Code.BAD_GRAPH,
-            f"not an environment graph: {graph_fault(data, error)}",
+            f"not an environment graph: {_place_of_fault(data)}{graph_fault(data, error)}",
             file=file,
             suggestion=REMEDY,
         ) from error
     extra = tuple((key, value) for key, value in data.items() if key not in ("nodes", "edges"))
     return EnvironmentGraph(nodes, edges, extra)
+
+
+def _place_of_fault(data: Any) -> str:
+    """Return the first node that has its keys and can't be read, as `nodes[3]: `; "" where there is none."""
+    nodes = data.get("nodes") if isinstance(data, Mapping) else None
+    for number, node in enumerate(nodes if isinstance(nodes, list) else ()):
+        try:
+            read_node(node)
+        except (KeyError, TypeError, ValueError, AttributeError):
+            return f"nodes[{number}]: " if isinstance(node, Mapping) and {"id", "class_name"} <= node.keys() else ""
+    return ""
 
 
 def to_release(graph: EnvironmentGraph) -> dict[str, Any]:

@@ -50,6 +50,11 @@ def environment_of(problem: Problem, knowledge: Knowledge) -> Activity:
     return _Building(problem, knowledge).built()
 
 
+def _names_room(fact: Fact) -> bool:
+    """Return whether a fact says in which room a thing is."""
+    return fact.predicate == "inroom" and len(fact.terms) == 2
+
+
 @dataclass
 class _Building:
     """The building of one environment, step by step."""
@@ -104,7 +109,7 @@ class _Building:
 
     def _make_rooms(self) -> None:
         for fact in self.problem.facts:
-            if fact.predicate == "inroom" and len(fact.terms) == 2:
+            if _names_room(fact):
                 given = fact.terms[1]
                 room = words().room_of(given, self.knowledge)
                 if not room:
@@ -115,8 +120,10 @@ class _Building:
                 if room and room != given:
                     self._note("rooms that stand for others, by the table", f"{given} = {room}")
         if not self.rooms:
-            raise HearthError.of(Code.NO_ROOM, "none of its rooms is one of ours", file=self.problem.file,
-                                 suggestion="`(inroom floor.n.01_1 kitchen)`")  # fmt: skip
+            rooms = sorted({str(fact.terms[1]) for fact in self.problem.facts if _names_room(fact)})
+            message = f"no room of ours stands for {', '.join(rooms)}" if rooms else "it names no room"
+            raise HearthError.of(Code.NO_ROOM, message, file=self.problem.file,
+                                 suggestion="`(inroom floor.n.01_1 kitchen)` is in one")  # fmt: skip
 
     def _make_nodes(self) -> None:
         stateful = {fact.terms[0] for fact in self.problem.facts if fact.predicate in words().substances and fact.terms}

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import gzip
+import json
 import re
 import zlib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -110,4 +112,7 @@ def _json(text: bytes, path: Path) -> Any:
     try:
         return orjson.loads(text)
     except orjson.JSONDecodeError as error:
+        if b"NaN" in text or b"Infinity" in text:  # as Python writes numbers that are none: readers name the entry
+            with suppress(ValueError, RecursionError):
+                return json.loads(text)
         raise HearthError.of(Code.BAD_JSON, f"not JSON: {error}", file=str(path)) from error

@@ -15,7 +15,7 @@ from hearth.homes.plans.home_shell import Thing
 from hearth.homes.relations import close, facing, many_close
 from hearth.interop.scene_graphs.single_holders import is_seat_for
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
@@ -78,17 +78,45 @@ def _can_be(state: str, class_name: str, usual: Sequence[str], knowledge: Knowle
     return knowledge.group_of(state) in {knowledge.group_of(each) for each in usual}
 
 
-def room_above(node: int, above: Mapping[int, Sequence[int]], rooms: set[int]) -> int | None:
-    """Return the first room on the way from a thing through its holders; None where there is none."""
-    waiting, seen = [node], {node}
-    while waiting:
-        for holder in above.get(waiting.pop(0), ()):
-            if holder in rooms:
-                return holder
-            if holder not in seen:
-                seen.add(holder)
-                waiting.append(holder)
-    return None
+def repeated_ids(graph: EnvironmentGraph, file: str) -> list[Diagnostic]:
+    """Return a fault for each id that several nodes of a graph have: relations would be about all of them."""
+    nodes: dict[int, list[str]] = {}
+    for number, node in enumerate(graph.nodes):
+        nodes.setdefault(node.id, []).append(f"{node.class_name} (nodes[{number}])")
+    return [
+        Diagnostic(
+            Code.DUPLICATE, f"{' and '.join(names[:4])} have the id {node}", file, suggestion="give each its own"
+        )
+        for node, names in nodes.items()
+        if len(names) > 1
+    ]
+
+
+def rooms_above(rooms: Sequence[Node], things_below: Mapping[int, Sequence[int]]) -> dict[int, int]:
+    """Return the room of each room, and of each thing in one through its holders: the room with the fewest between."""
+    return spread({room.id: room.id for room in rooms}, [room.id for room in rooms], things_below)
+
+
+def below(graph: EnvironmentGraph) -> dict[int, list[int]]:
+    """Return the things that are ON or INSIDE each node."""
+    found: dict[int, list[int]] = {}
+    for edge in graph.edges:
+        if edge.relation in ("ON", "INSIDE"):
+            found.setdefault(edge.target, []).append(edge.source)
+    return found
+
+
+def spread(rooms: dict[int, int], level: list[int], things_below: Mapping[int, Sequence[int]]) -> dict[int, int]:
+    """Return rooms with those of the things that some nodes hold, however deep, and that have none yet, added."""
+    while level:
+        new: list[int] = []
+        for holder in level:
+            for thing in things_below.get(holder, ()):
+                if thing not in rooms:
+                    rooms[thing] = rooms[holder]
+                    new.append(thing)
+        level = new
+    return rooms
 
 
 def held_by_box(node: Node, nodes: Sequence[Node], knowledge: Knowledge) -> tuple[str, Node] | None:
@@ -138,16 +166,21 @@ def boxed_by_holders(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[Env
     holders = {e.source: e for e in graph.edges if e.relation in ("ON", "INSIDE") and e.target not in rooms}
     boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
     names = {node.id: node.class_name for node in graph.nodes}
-    waiting = [node.id for node in graph.nodes if node.box is None and node.id in holders]
+    groups: dict[int, list[int]] = {}
+    for node, edge in holders.items():
+        groups.setdefault(edge.target, []).append(node)
+    order = {node.id: number for number, node in enumerate(graph.nodes)}
     placed: list[str] = []
-    while ready := [node for node in waiting if holders[node].target in boxes]:
-        for node in ready:
+    level = [node.id for node in graph.nodes if node.box is not None]
+    while level:
+        ready = [node for holder in level for node in groups.get(holder, ()) if node not in boxes]
+        for node in sorted(ready, key=order.__getitem__):
             edge = holders[node]
-            group = [other for other in holders if holders[other].target == edge.target]
+            group = groups[edge.target]
             shaped = form(names[node], knowledge)
             boxes[node] = _on_or_in(boxes[edge.target], edge.relation, shaped, group.index(node), len(group))
             placed.append(names[node])
-        waiting = [node for node in waiting if node not in boxes]
+        level = ready
     nodes = tuple(replace(node, box=boxes.get(node.id, node.box)) for node in graph.nodes)
     return replace(graph, nodes=nodes), placed
 
@@ -191,9 +224,10 @@ def with_doors(graph: EnvironmentGraph, first: int) -> tuple[EnvironmentGraph, i
     return replace(graph, nodes=(*graph.nodes, *doors), edges=(*graph.edges, *edges)), len(doors)
 
 
-def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> int:
-    """Return how many things of a graph with boxes nobody can walk to."""
-    return sum(1 for _ in CHECKS["on foot"](View(graph, knowledge)))
+def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> list[str]:
+    """Return the things of a graph with boxes that nobody can walk to, as `mug (7)`."""
+    names = {str(node.id): f"{node.class_name} ({node.id})" for node in graph.nodes}
+    return [names[fault.found] for fault in CHECKS["on foot"](View(graph, knowledge))]
 
 
 def without_boxes(graph: EnvironmentGraph) -> EnvironmentGraph:

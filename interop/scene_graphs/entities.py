@@ -15,6 +15,9 @@ DEEPEST = 12
 DEEPEST_FIELD = 3
 """Levels of an entry in which its own fields stand."""
 
+MENTIONS_EACH = 10
+"""Words in lists of things that are read for each thing that may be read."""
+
 LONGEST_LABEL = 80
 """Characters of a label."""
 
@@ -70,11 +73,20 @@ class Found:
     links: list[Link] = field(default_factory=list)
     mentions: list[Mention] = field(default_factory=list)
     described: list[Entity] = field(default_factory=list)
+    most: int = 0
+
+    @property
+    def is_full(self) -> bool:
+        """Return whether there are more things than are read."""
+        return len(self.entities) > self.most or len(self.mentions) > MENTIONS_EACH * self.most
 
 
-def entities_of(data: Any, shape: Shape) -> Found:
-    """Return the things and relations in a JSON value, in its order."""
-    found = Found()
+def entities_of(data: Any, shape: Shape, most: int) -> Found:
+    """Return the things and relations in a JSON value, in its order.
+
+    Of a value with more things than `most`, those up to the first one too many.
+    """
+    found = Found(most=most)
     _Walk(shape, found).visit(data, "", "", None, 0)
     called = {key for entity in found.entities for key in entity.keys}
     found.entities += [entity for entity in found.described if entity.keys[0] not in called]
@@ -105,15 +117,17 @@ class _Walk:
             owner: the entry that it stands in.
             depth: levels above it.
         """
-        if depth > DEEPEST:
+        if depth > DEEPEST or self.found.is_full:
             return
         if isinstance(value, list):
             for number, each in enumerate(value):
+                if self.found.is_full:
+                    return
                 self._element(each, f"{path}[{number}]", group, owner, depth, "")
         elif isinstance(value, dict):
             grouped = group in self.shape.groups
             for key, each in value.items():
-                if key_of(str(key)) in self.shape.best:
+                if key_of(str(key)) in self.shape.best or self.found.is_full:
                     continue
                 below = f"{path}.{key}" if path else str(key)
                 if grouped and isinstance(each, dict):

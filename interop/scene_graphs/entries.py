@@ -10,6 +10,7 @@ from typing import Any
 from hearth.interop.scene_graphs import vectors
 from hearth.interop.scene_graphs.entities import Entity, values_of
 from hearth.interop.scene_graphs.shape import Shape
+from hearth.interop.scene_graphs.units_of_length import length_unit
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.spelling import key_of
 
@@ -18,9 +19,6 @@ FULL_TURN = 6.3
 
 CLEAR = 0.3
 """Difference in the logarithm of heights by which one axis fits clearly better than another."""
-
-LONGEST_ROOM = 60.0
-"""Metres: things farther apart than this are written in another unit."""
 
 
 @dataclass(frozen=True)
@@ -51,30 +49,38 @@ class Units:
         up: the axis that points upwards.
         up_reason: why, in words.
         scale: metres of a unit.
+        scale_reason: why, in words; "" for metres.
+        scale_fault: why the scale is in doubt; "" where it is not.
         in_degrees: whether rotations that are numbers are in degrees.
     """
 
     up: str
     up_reason: str
     scale: float
+    scale_reason: str
+    scale_fault: str
     in_degrees: bool
 
 
-def units_of(entities: Sequence[Entity], usual: Sequence[Vector | None], shape: Shape) -> Units:
+def units_of(entities: Sequence[Entity], usual: Sequence[Vector | None], shape: Shape, unit_word: str = "") -> Units:
     """Return how the places of some entries are measured: as the shape says, else as the numbers suggest.
 
     Args:
         entities: things and rooms.
         usual: the size that each has in the knowledge, height second; None where it has none.
         shape: of the file.
+        unit_word: the file's own word for its unit of length.
     """
     places = [place for entity in entities if (place := _place(entity, shape)) is not None]
     sizes = [(_size(entity, shape), size) for entity, size in zip(entities, usual, strict=True)]
     pairs = [(given, known) for given, known in sizes if given and known and min(given) > 0]
+    length = length_unit(places, pairs, shape, unit_word)
+    pairs = [(_times(given, length.metres), known) for given, known in pairs]
+    places = [_times(place, length.metres) for place in places]
     up, reason = (shape.up, "the mapping says so") if shape.up != "auto" else _up(entities, places, pairs)
     turns = [value for entity in entities for value in values_of(entity, shape.fields["rotation"])[:1]]
     in_degrees = any(type(value) in (int, float) and abs(value) > FULL_TURN for value in turns)
-    return Units(up, reason, shape.scale or _scale(places), in_degrees)
+    return Units(up, reason, *length, in_degrees)
 
 
 def _up(
@@ -95,14 +101,6 @@ def _up(
             return "z", f"the places span {spans[2]:.1f} along z and {spans[1]:.1f} along y"
         return "y", f"the places span {spans[1]:.1f} along y and {spans[2]:.1f} along z"
     return "y", "nothing in the file says otherwise"
-
-
-def _scale(places: Sequence[Vector]) -> float:
-    """Return metres of a unit: 1, or that of centimetres or millimetres where the places are far apart."""
-    if len(places) < 2:
-        return 1.0
-    span = max(max(column) - min(column) for column in zip(*places, strict=True))
-    return next((scale for scale in (1.0, 0.01, 0.001) if span * scale <= LONGEST_ROOM), 1.0)
 
 
 def entry_of(entity: Entity, class_name: str, shape: Shape, units: Units) -> Entry:

@@ -15,11 +15,13 @@ from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
+from hearth.interop.scene_graphs.geometry_faults import geometry_faults
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
 from hearth.interop.scene_graphs.omnigibson import joined
 from hearth.interop.scene_graphs.room_extents import with_boxes
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
+from hearth.interop.scene_graphs.units_of_length import unit_word
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
@@ -47,14 +49,16 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(joined(data), shape)
+    found = entities_of(joined(data), shape, MOST_ENTRIES)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
-    if len(found.entities) > MOST_ENTRIES:
-        message = f"{len(found.entities):,} things and rooms, where {MOST_ENTRIES:,} are read"
+    if found.is_full or len(found.entities) > MOST_ENTRIES:
+        message = f"more than {MOST_ENTRIES:,} things and rooms"
         raise HearthError.of(Code.FILE_TOO_LARGE, message, file=file, suggestion="write a file for each floor or room")
-    return _Reading(shape, knowledge, file).read(found.entities, ties_of(found, shape))
+    return _Reading(shape, knowledge, file, unit_word=unit_word(data, shape)).read(
+        found.entities, ties_of(found, shape)
+    )
 
 
 def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> ReadGraph:
@@ -63,14 +67,19 @@ def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> R
     Its nodes, relations and boxes stay. A graph with a CLOSE edge keeps its own nearness.
 
     Raises:
-        HearthError: as `lay_out`.
+        HearthError: as `lay_out`; FILE_TOO_LARGE: it has more nodes than are filled in; DUPLICATE: nodes share an id.
     """
+    if len(graph.nodes) > MOST_ENTRIES:
+        message = f"{len(graph.nodes):,} nodes, where {MOST_ENTRIES:,} are filled in"
+        raise HearthError.of(Code.FILE_TOO_LARGE, message, file=file, suggestion="write a file for each floor or room")
+    if faults := completion.repeated_ids(graph, file):
+        raise HearthError(faults)
     reading = _Reading(usual(), knowledge, file, keeps_boxes=True)
     if not any(node.category == ROOM_CATEGORY for node in graph.nodes):
         name = completion.room_for([node.class_name for node in graph.nodes], knowledge)
         room = Node(_next(graph), name, ROOM_CATEGORY)
         graph = replace(graph, nodes=(*graph.nodes, room))
-        reading.note("rooms made, as the file has none", [name])
+        reading.note("rooms made, as no room of the file is known", [name])
     nodes = [completion.with_usual_fields(node, knowledge) for node in graph.nodes]
     changed = [new.class_name for new, old in zip(nodes, graph.nodes, strict=True) if new is not old]
     reading.note("things with properties or states from the knowledge", changed)
@@ -89,6 +98,8 @@ class _Reading:
     notes: list[Filling] = field(default_factory=list)
     left_out: list[Diagnostic] = field(default_factory=list)
     floors: list[Box] = field(default_factory=list)
+    paths: dict[int, str] = field(default_factory=dict)
+    unit_word: str = ""
 
     def read(self, entities: Sequence[Entity], ties: Ties) -> ReadGraph:
         """Return the home of some entries and their relations."""
@@ -96,16 +107,21 @@ class _Reading:
         kept = [entity for entity in entities if classes[id(entity)].name]
         self._note_classes(entities, classes)
         self._name_shared_ids(entities)
+        for entity in kept:
+            for message, remedy in geometry_faults(entity, self.shape):
+                self._leave(Code.BAD_GRAPH, message, entity.path, remedy)
         if not kept:
             raise HearthError(self.left_out[:20])
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
-        units = units_of(kept, [None if shaped is None else shaped.size for shaped in shapes], self.shape)
+        usual_sizes = [None if shaped is None else shaped.size for shaped in shapes]
+        units = units_of(kept, usual_sizes, self.shape, self.unit_word)
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
         entries, raised = raised_from_feet(entries, self.knowledge)
         self.note("places at the foot of things, as all stand on one level", raised)
         self.floors = self._floors(entities, units)
         rooms = self._named_rooms(ties, entries)
         numbers = _numbers([*rooms.values(), *entries])
+        self.paths = {numbers[id(entry)]: entry.entity.path for entry in entries}
         edges = self._edges(ties, entries, rooms, numbers)
         graph = self._graph([*rooms.values(), *entries], numbers, edges)
         self._note_units(entries, units)
@@ -158,11 +174,15 @@ class _Reading:
                     self._leave(Code.DUPLICATE, message, entity.path, "give each an id of its own")
 
     def _singly_held(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        edges, left = with_single_holders(graph, self.knowledge)
+        found = with_single_holders(graph, self.knowledge)
         names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes}
-        words = [f"{names[edge.source]} {edge.relation} {names[edge.target]}" for edge in left]
-        self.note("second holders and circles, left out", words)
-        return replace(graph, edges=tuple(edges))
+        words = [f"{names[edge.source]} {edge.relation} {names[edge.target]}" for edge in found.second]
+        self.note("second holders, left out", words)
+        for circle in found.circles:
+            way = " ".join(f"{names[edge.source]} {edge.relation}" for edge in circle)
+            message = f"a circle of holders: {way} {names[circle[0].source]}; the last relation is left out"
+            self._leave(Code.LOOP, message, self.paths.get(circle[-1].source, ""), "name another holder, or none")
+        return replace(graph, edges=tuple(found.edges))
 
     def _named_rooms(self, ties: Ties, entries: Sequence[Entry]) -> dict[str, Entry]:
         """Return an entry for each room that entries only name; a room for all where there is none."""
@@ -181,7 +201,7 @@ class _Reading:
         if not found and not any(self.knowledge.is_room(entry.class_name) for entry in entries):
             name = completion.room_for([entry.class_name for entry in entries], self.knowledge)
             found[""] = Entry(Entity("", (), name, name, {}), name)
-            self.note("rooms made, as the file has none", [name])
+            self.note("rooms made, as no room of the file is known", [name])
         return found
 
     def _edges(
@@ -255,7 +275,10 @@ class _Reading:
         placed = [entry for entry in entries if entry.place is not None]
         self.note(f"places, {units.up} upwards ({units.up_reason})", [entry.class_name for entry in placed])
         if units.scale != 1.0:
-            self.note(f"places in units of {units.scale:g} m, as they are so far apart", [e.class_name for e in placed])
+            self.note(f"places in units of {units.scale:g} m, {units.scale_reason}", [e.class_name for e in placed])
+        if units.scale_fault:
+            self._leave(Code.BAD_GRAPH, units.scale_fault, placed[0].entity.path if placed else "units",
+                        "`scale:` of a mapping file: metres of a unit")  # fmt: skip
         bare = [each for each in placed if each.size is None or min(each.size) <= 0]
         sized = [each.class_name for each in bare if not self.knowledge.is_room(each.class_name)]
         self.note("sizes from the knowledge", sized)
@@ -320,18 +343,16 @@ class _Reading:
     def _housed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         """Return the graph in which everything that is on or in something is INSIDE the room of that as well."""
         rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
-        ids = {room.id for room in rooms}
-        above: dict[int, list[int]] = {}
-        for edge in graph.edges:
-            if edge.relation in ("ON", "INSIDE"):
-                above.setdefault(edge.source, []).append(edge.target)
+        below = completion.below(graph)
+        above = completion.rooms_above(rooms, below)
         had = set(graph.edges)
         new: list[Edge] = []
         for node in graph.nodes:
-            if node.id not in ids:
-                room = completion.room_above(node.id, above, ids) or self._room_of(node.box, rooms).id
-                above.setdefault(node.id, []).append(room)
-                new.append(Edge(node.id, "INSIDE", room))
+            if node.category != ROOM_CATEGORY:
+                if node.id not in above:
+                    above[node.id] = self._room_of(node.box, rooms).id
+                    completion.spread(above, [node.id], below)
+                new.append(Edge(node.id, "INSIDE", above[node.id]))
         return replace(graph, edges=(*graph.edges, *(edge for edge in new if edge not in had)))
 
     def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:

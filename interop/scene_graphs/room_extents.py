@@ -51,7 +51,7 @@ def with_boxes(
     own, notes = _with_own_boxes(graph, knowledge)
     if own is None:
         return _laid_out(graph, file, knowledge, notes)
-    cut = 0
+    cut: list[str] = []
     last: tuple[EnvironmentGraph, Notes] | None = None
     for extents in _extents(own, floors):
         found = _with_rooms(own, extents.boxes)
@@ -66,8 +66,10 @@ def with_boxes(
         boxes = {node.id: node.box for node in moved if node.box is not None}
         last[1].append((f"things moved by {SHIFT:g} m at most into reach", [node.class_name for node in moved]))
         return _with_rooms(last[0], boxes), last[1]
-    if cut:
-        notes.append(("boxes of the file left out; things that can't be walked to", ["box"] * cut))
+    had = [node.class_name for node in graph.nodes if node.box is not None and node.category != ROOM_CATEGORY]
+    others = f" and {len(cut) - 1} others" if len(cut) > 1 else ""
+    why = f"nobody can walk to {cut[0]}{others}" if cut else "its rooms can't be told apart"
+    notes.append((f"boxes of the file left out, as {why}", had))
     return _laid_out(graph, file, knowledge, notes)
 
 

@@ -34,6 +34,7 @@ class Shape:
         flags: name of a flag -> the states of true and of false.
         states: word -> state of ours.
         classes: label -> class of ours; None: left out.
+        units: word -> metres of that unit of length.
         up: the axis that points upwards, or `auto`.
         quaternion: the order of the numbers of a rotation.
         scale: metres of a unit; 0: as the file suggests.
@@ -48,6 +49,7 @@ class Shape:
     flags: Mapping[str, tuple[str, str]]
     states: Mapping[str, str]
     classes: Mapping[str, str | None]
+    units: Mapping[str, float]
     up: str = "auto"
     quaternion: str = "xyzw"
     scale: float = 0.0
@@ -66,6 +68,7 @@ def usual() -> Shape:
         relations=MappingProxyType(by_word(data["relations"])),
         flags=MappingProxyType({name: (true, false) for name, (true, false) in data["flags"].items()}),
         states=MappingProxyType(by_word(data["states"])),
+        units=MappingProxyType({word: float(metres) for metres, words in data["units"].items() for word in words}),
         classes=MappingProxyType({key_of(label): name for label, name in data["classes"].items()}),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 from hearth.homes.geometry import bottom, top
 from hearth.kb.knowledge import Knowledge
@@ -10,8 +11,22 @@ from hearth.schemas.graph import Edge, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 
-def with_single_holders(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[list[Edge], list[Edge]]:
-    """Return the edges of a graph in which each thing is ON or INSIDE one other at most, and the edges left out.
+class SinglyHeld(NamedTuple):
+    """The edges of a graph in which each thing is ON or INSIDE one other at most.
+
+    Attributes:
+        edges: that stay.
+        second: edges to further holders, left out.
+        circles: circles of holders, each with its edges in order; the last edge is left out.
+    """
+
+    edges: list[Edge]
+    second: list[Edge]
+    circles: list[tuple[Edge, ...]]
+
+
+def with_single_holders(graph: EnvironmentGraph, knowledge: Knowledge) -> SinglyHeld:
+    """Return the edges of a graph in which each thing is ON or INSIDE one other at most, and those left out.
 
     Of several holders the innermost stays; of those, the one whose top is nearest below the thing.
     """
@@ -27,10 +42,11 @@ def with_single_holders(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[
         able = [edge for edge in edges if not is_seat_for(nodes[source], nodes[edge.target], knowledge)]
         if able:
             chosen[source] = min(able, key=lambda edge: _rank(edge, edges, holders, nodes))
-    kept = set(_without_circles(chosen))
-    left = [edge for edges in held.values() for edge in edges if edge not in kept]
-    gone = set(left)
-    return [edge for edge in graph.edges if edge not in gone], left
+    kept, circles = _without_circles(chosen)
+    closing = {circle[-1] for circle in circles}
+    second = [edge for edges in held.values() for edge in edges if edge not in kept and edge not in closing]
+    gone = closing.union(second)
+    return SinglyHeld([edge for edge in graph.edges if edge not in gone], second, circles)
 
 
 def is_seat_for(node: Node, other: Node, knowledge: Knowledge) -> bool:
@@ -48,14 +64,23 @@ def _rank(
     return outer, round(apart, 3), edges.index(edge)
 
 
-def _without_circles(chosen: Mapping[int, Edge]) -> list[Edge]:
-    """Return the edges that lead to something that is held by nothing, or by something kept before."""
-    kept: dict[int, Edge] = {}
-    for source, edge in chosen.items():
-        at, seen = edge.target, {source}
-        while at in kept and at not in seen:
-            seen.add(at)
-            at = kept[at].target
-        if at not in seen:
-            kept[source] = edge
-    return list(kept.values())
+def _without_circles(chosen: Mapping[int, Edge]) -> tuple[set[Edge], list[tuple[Edge, ...]]]:
+    """Return the edges without those that close a circle, and the circles. Each thing is walked through once."""
+    kept: set[Edge] = set()
+    circles: list[tuple[Edge, ...]] = []
+    done: set[int] = set()
+    for start in chosen:
+        at, way = start, dict[int, Edge]()
+        while at in chosen and at not in done and at not in way:
+            way[at] = chosen[at]
+            at = chosen[at].target
+        if at in way:
+            nodes = list(way)
+            circle = nodes[nodes.index(at) :]
+            circles.append(tuple(way[node] for node in circle))
+            done.update(way)
+            kept.update(edge for edge in way.values() if edge is not circles[-1][-1])
+        else:
+            done.update(way)
+            kept.update(way.values())
+    return kept, circles

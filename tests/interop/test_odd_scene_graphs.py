@@ -127,7 +127,17 @@ def test_a_hundred_thousand_nodes_are_refused_at_once():
     assert raised.value.diagnostics[0].code is Code.FILE_TOO_LARGE
 
 
-def test_a_circle_of_holders_is_named_in_the_table():
-    found = read([{"id": "a", "label": "box", "in": "b"}, {"id": "b", "label": "box", "in": "a"}])
-    [note] = [note for note in found.fillings if "circles" in note.what]
-    assert note.number == 1 and "box" in note.examples[0]
+def test_a_circle_of_holders_is_a_fault_at_a_node_of_it():
+    found = read([{"id": one, "label": "box", "in": other} for one, other in ("ab", "bc", "ca")])
+    [fault] = found.left_out
+    assert fault.code is Code.LOOP and fault.message.startswith("[2]: ") and fault.suggestion
+    assert fault.message.count("box") == 4
+    inside = {(edge.source, edge.target) for edge in found.graph.edges if edge.relation == "INSIDE"}
+    assert {(2, 3), (3, 4)} <= inside and (4, 2) not in inside
+
+
+def test_a_second_holder_is_counted_and_no_circle():
+    found = read([{"id": "m", "label": "mug", "on": "t", "in": "f"}, {"id": "t", "label": "table"},
+                  {"id": "f", "label": "fridge"}])  # fmt: skip
+    [note] = [note for note in found.fillings if note.what.startswith("second holders")]
+    assert note.number == 1 and found.left_out == ()
