@@ -22,7 +22,7 @@ from hearth.models.reading.reader import Reader
 from hearth.models.reading.reader_recall import ReaderRecall
 from hearth.models.text.retrieval import Nearest
 from hearth.models.text.retrieve_edit import RetrieveEdit
-from hearth.models.text_examples import Corpus, Example, _example
+from hearth.models.text_examples import Corpus, Example, example_of
 from hearth.scoring.metrics import lcs
 
 MODELS = {"nearest": Nearest(), "retrieve-edit": RetrieveEdit(), "reader": Reader(), "reader-recall": ReaderRecall()}
@@ -58,7 +58,7 @@ def parts(dataset: Dataset, tested: str) -> tuple[tuple[Example, ...], tuple[Exa
     for row in dataset.read(_PROGRAMS, {}):
         part = ours if row["origin"] != "alfred" else test if tested in row["place"] else theirs
         if row["title"] or row["description"]:
-            part.append(_example(row))
+            part.append(example_of(row))
     return tuple(ours), tuple(theirs), tuple(test)
 
 

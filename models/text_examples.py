@@ -163,10 +163,11 @@ def examples(
 
 def _read(dataset: Dataset, split: str, part: str, originals: bool, sketches: str) -> tuple[Example, ...]:
     query = _PROGRAMS.format(sketches=sketches_query(sketches), where="p.parent_id IS NULL" if originals else "true")
-    return tuple(_example(row) for row in dataset.read(query, {"split": split, "part": part}))
+    return tuple(example_of(row) for row in dataset.read(query, {"split": split, "part": part}))
 
 
-def _example(row: Any) -> Example:
+def example_of(row: Any) -> Example:
+    """Return the example of a row of programs with its texts and steps."""
     texts = (row["title"] or "", row["description"] or "")
     keep = tuple(row["keep"] or ())
     return Example(
