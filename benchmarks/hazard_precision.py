@@ -5,6 +5,7 @@
 Programs are drawn by a seed from the corpus, sampled and run by action set 3, in our homes in turn. Few programs bring
 a hazard: where the first `--programs` bring fewer than `--least`, more are drawn until there are enough. The sheet has
 no verdicts. Answers are lines `id,yes|no,reason`: whether the hazard is one in that run. The asked precision is .9.
+`hazard_answers_second_draw.csv` judges the draw of `--seed 2`, after the rules that the first draw had changed.
 """
 
 from __future__ import annotations

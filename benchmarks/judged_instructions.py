@@ -17,7 +17,12 @@ from hearth.kb.loading.load import default
 from hearth.schemas.diagnostics import HearthError
 
 FOLDER = Path(__file__).resolve().parents[1] / "tests" / "golden" / "challenges"
-FILES = ("paraphrases.txt", "more_paraphrases.txt", "requests_of_another_author.txt")
+FILES = (
+    "paraphrases.txt",
+    "more_paraphrases.txt",
+    "requests_of_another_author.txt",
+    "requests_of_a_second_author.txt",
+)
 OF_WAH = ("dinnertable", "coffeetable", "wineglass", "INSIDE(apple")
 
 

@@ -191,7 +191,13 @@ class _Paraphrase:
         return _READERS[kind](self, _Said(kind, some, at, slots, before))
 
     def relation(self, prep: str, at: str) -> str | None:
-        """Return the relation of a preposition; `to` means the one that the place has, where it has one alone."""
+        """Return the relation of a preposition; `to` means the one that the place has, where it has one alone.
+
+        None means that nothing is put there: `a cup in your hands` is held.
+        """
+        kind = self.knowledge.object_class(at)
+        if kind is not None and "BODY_PART" in kind.properties:
+            return None
         if _ON.search(prep):
             return "ON"
         if prep.rpartition(" ")[2] != "to":

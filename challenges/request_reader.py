@@ -183,6 +183,8 @@ class _Reading(Statements):
     def _lit(self, here: _Here) -> bool:
         if self.mode == "no" and here.next == "thing":
             raise RefusedError  # `no plates on the table`
+        if self.mode == "turn_off":
+            return True  # `turn off all lamps that are on`
         if self.mode == "no":
             self.none_on()
             self.mode = ""
@@ -213,7 +215,7 @@ class _Reading(Statements):
         self.mode = ""
 
     def _hand(self) -> None:
-        if self.mode == "no":
+        if self.mode in ("no", "turn_on", "turn_off"):
             raise RefusedError
         if self.waiting:
             self.emit("held", [((HOLDS, self.doer, name), number) for name, number in self.taken()])

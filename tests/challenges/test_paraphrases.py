@@ -50,6 +50,13 @@ def test_requests_of_another_author_are_read(knowledge):
     assert [text for each, text in found if each == "wrong" and "a remote" not in text] == []
 
 
+def test_requests_of_a_second_author_are_read(knowledge):
+    """At first sight 67 of these 100 were read, and two were misread."""
+    found = [(outcome(goal, text, knowledge), text) for goal, text in pairs("requests_of_a_second_author.txt")]
+    assert len(found) == 100 and sum(each == "right" for each, _ in found) >= 84
+    assert [text for each, text in found if each == "wrong"] == []
+
+
 @pytest.mark.parametrize(
     "text",
     [
