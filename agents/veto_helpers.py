@@ -58,11 +58,12 @@ class Begun(NamedTuple):
 
     Attributes:
         until: the last tick in which it is to be ended.
-        contents: what was in and on its thing then; while that is so, the thing has not been used yet.
+        contents: what was in and on its thing in the tick after, when an opened thing shows it; while that is so, the
+            thing has not been used yet. None before that.
     """
 
     until: int
-    contents: int
+    contents: int | None = None
 
 
 class Veto(_Base):
@@ -92,7 +93,11 @@ class Veto(_Base):
         world = _believed(observation)
         idle = dict(present(tick(world, {}, self._rules)[0]))
         self._given &= idle.keys()
-        self._begun = {place: each for place, each in self._begun.items() if place in idle}
+        self._begun = {
+            place: each if each.contents is not None else each._replace(contents=_contents(world, place))
+            for place, each in self._begun.items()
+            if place in idle
+        }
         for _ in range(self.tries):
             choice: Choice = super().act(observation, legal)
             if self._refuses:
@@ -127,7 +132,7 @@ class Veto(_Base):
                 return self._ended(place, world, legal)
         for place in harm.begun:
             after = world.home.knowledge.hazards[place[0]].after
-            self._begun[place] = Begun(view.tick + after - MARGIN, _contents(world, place))
+            self._begun[place] = Begun(view.tick + after - MARGIN)
         return choice
 
     def _in_time(self, world: World, after: World, view: View, legal: Legal) -> Step | None:

@@ -77,8 +77,7 @@ def play(
     if scene.instruction and not quiet:
         output.note(f"{task}: {scene.instruction}")
     with ExitStack() as stack:
-        kept = _transcript(transcript, stack)
-        how = _How(ticks, within, form, messages, images, as_json, kept, scene.instruction)
+        how = _How(ticks, within, form, messages, images, as_json, _transcript(transcript, stack), scene.instruction)
         playing = [_agent(seat, how, stack) for seat in seats]
         played = _play(scene, playing, seed, how, _actions(actions or scene.actions, known), not full)
         for each in playing:

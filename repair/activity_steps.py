@@ -58,8 +58,8 @@ def milestones(execution: Execution) -> Postconditions:
     """Effects that were undone again, but not before something was done meanwhile: the stove that was on while cooking.
 
     Only devices switched on, objects put somewhere and where one sat or lay count; objects are held or opened for
-    another step's sake. A device that switches itself off in time counts while it is on at the end: that it stays so
-    is no effect that a repair could be held to.
+    another step's sake. A device that switches itself off in time counts while it is on at the end: no repair
+    can be asked to keep it so.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])

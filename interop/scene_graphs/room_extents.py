@@ -68,7 +68,7 @@ def with_boxes(
         return _with_rooms(last[0], boxes), last[1]
     had = [node.class_name for node in graph.nodes if node.box is not None and node.category != ROOM_CATEGORY]
     others = f" and {len(cut) - 1} others" if len(cut) > 1 else ""
-    why = f"nobody can walk to {cut[0]}{others}" if cut else "its rooms can't be told apart"
+    why = f"nobody can walk to {cut[0]}{others}" if cut else "its rooms cannot be distinguished"
     notes.append((f"boxes of the file left out, as {why}", had))
     return _laid_out(graph, file, knowledge, notes)
 

@@ -26,17 +26,9 @@ WAITS = "Wait"
 GRABS = "Grab"
 HANDS = 2
 PUTS = "PutBack"
-PUTTING = frozenset({"PutBack", "PutIn", "PutOn"})
-TOGGLES = (
-    frozenset({"SwitchOn", "SwitchOff", "PlugOut"}),
-    frozenset({"PutIn", "PutBack", "Grab", "Drop", "PutOn", "Eat", "Drink"}),
-)
-"""Acts that undo one another; one of them alone holds for a thing."""
+TOGGLES = ("switched", "moved")
+"""Groups of acts that undo one another; one of them alone holds for a thing."""
 
-SEATS = frozenset({"Sit", "Lie"})
-RISES = frozenset({"StandUp", "WakeUp", "Walk"})
-SEATED = frozenset({"Read", "Drink"})
-DROPS = frozenset({"Drop", "Release"})
 PUT_DOWN = ("kitchen_counter", "dining_table", "kitchen_table", "table", "coffee_table", "desk")
 """Furniture on which a thing is put down to have a hand free."""
 
@@ -151,7 +143,7 @@ def _wanted(acts: Sequence[Act]) -> tuple[Act, ...]:
     for act in _in_hands(acts):
         same = max((n for n, each in enumerate(found) if _is_same(each, act)), default=-1)
         since = found[same + 1 :] if same >= 0 else ()
-        if _is_so(found, act) or (act.action in DROPS and _is_put(found, act)):
+        if _is_so(found, act) or (act.action in acts_of("dropped") and _is_put(found, act)):
             continue
         if act.action == WAITS or same < 0 or any(_concerns(each, act) for each in since):
             found.append(act)
@@ -162,8 +154,8 @@ def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
     """Return acts in which a thing to read or drink in a seat is taken before the agent sits."""
     found = list(acts)
     for at, act in enumerate(acts):
-        uses = next((each for each in acts[at + 1 :] if each.action in SEATED or each.action in RISES), None)
-        if act.action not in SEATS or uses is None or uses.action in RISES or not uses.objects:
+        uses = next((each for each in acts[at + 1 :] if each.action in acts_of("seated") | acts_of("rises")), None)
+        if act.action not in acts_of("seats") or uses is None or uses.action in acts_of("rises") or not uses.objects:
             continue
         thing = uses.objects[:1]
         if not any(_nodes(each.objects)[:1] == _nodes(thing) for each in acts[: acts.index(uses)]):
@@ -173,7 +165,7 @@ def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
 
 def _is_so(before: Sequence[Act], act: Act) -> bool:
     """Return whether a thing already is as an act makes it, by the last act that bears on that."""
-    kinds = next((kinds for kinds in TOGGLES if act.action in kinds), None)
+    kinds = next((kinds for kinds in map(acts_of, TOGGLES) if act.action in kinds), None)
     if kinds is None or not act.objects:
         return False
     last = next(
@@ -190,7 +182,7 @@ def _is_so(before: Sequence[Act], act: Act) -> bool:
 def _is_put(before: Sequence[Act], act: Act) -> bool:
     """Return whether the last act before one that lets a thing go has put that thing somewhere."""
     last = next((each for each in reversed(before) if _nodes(each.objects)[:1] == _nodes(act.objects)[:1]), None)
-    return last is not None and last.action in PUTTING
+    return last is not None and last.action in acts_of("put")
 
 
 def _in_hands(acts: Sequence[Act]) -> Iterator[Act]:

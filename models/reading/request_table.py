@@ -171,7 +171,7 @@ def words() -> Words:
 
 @cache
 def acts_of(kind: str) -> frozenset[str]:
-    """Return the names of the acts of a kind: `held`, `released` or `kept`."""
+    """Return the names of the acts of a kind of `request_words.yaml`, such as `held`."""
     return frozenset(_word_data()[kind])
 
 

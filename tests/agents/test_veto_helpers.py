@@ -84,7 +84,7 @@ def played(agent, goal=None, ticks=14, world=None):
 
 
 def test_without_a_veto_the_scripts_do_harm():
-    assert played(Scripted("Open 5", "Grab 10", "Walk 2"))[1].helper_harm == 1
+    assert played(Scripted("Open 5", "Grab 10", "Walk 2"), ticks=20)[1].helper_harm == 1
     assert played(Scripted("SwitchOn 7", "Walk 2"))[1].helper_harm == 1
     assert played(Scripted("SwitchOn 8"))[1].helper_harm >= 1
     assert played(Scripted("Drop 6"))[1].irreversible == 1

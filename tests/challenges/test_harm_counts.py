@@ -36,7 +36,7 @@ NODES = (
     Node(PLATE, "plate", "Props", ("GRABBABLE",)),
 )
 NAMES = {FRIDGE: "fridge", PLATE: "plate"}
-WAITS = ((None, None),) * 10
+WAITS = ((None, None),) * 15
 
 
 GOAL = Goal.of(Literal.of("ON", "plate", "fridge"))

@@ -32,7 +32,7 @@ NEEDED = {
     "query": ("SELECT 1",), "export": ("--format", "jsonl"), "model table": ("1",),
     "model train": ("random-retrieval",), "challenge people": ("x",), "study simulate": ("x",), "study prepare": ("x",),
     "study figure": ("x",), "study forget": ("x",),
-    "llm probe": ("x",), "model predict": ("x",),
+    "llm probe": ("x",), "llm judge": ("x", "x"), "model retrieval": ("--embed", "x"), "model predict": ("x",),
     "model figure": ("1", "--model", "x"), "model show": ("x",), "kb show": ("mug",),
     "kb action": ("Walk",), "kb find": ("mug",), "kb path": ("mug", "cup"), "kb export": ("pddl",),
     "home show": ("cabin",), "home lint": ("cabin",), "home convert": ("cabin",), "home export": ("cabin",),

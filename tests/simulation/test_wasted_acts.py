@@ -84,5 +84,5 @@ def test_an_episode_that_ends_in_the_middle_counts_what_has_lasted():
     worlds = ran("Open 4", "Wait")
     assert [each.hazard.name for each in harm_among(worlds).hazards] == ["fridge_open"]
     assert harm_among(worlds, ends=False).counts == (0, 0, 1)
-    long = ran("Open 4", *["Wait"] * 10)
-    assert [(each.lasted, each.at_end) for each in harm_among(long, ends=False).hazards] == [(11, True)]
+    long = ran("Open 4", *["Wait"] * 15)
+    assert [(each.lasted, each.at_end) for each in harm_among(long, ends=False).hazards] == [(16, True)]
