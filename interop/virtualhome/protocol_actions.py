@@ -131,6 +131,10 @@ def _check_script(simulator: Simulator, request: Request) -> Reply:
     return Reply(failure is None, failed(failure, program) if failure else "")
 
 
+STOPPED = "Not done from line {line} on: another character's act failed there, and nobody acts in such a line"
+"""The message of a character whose own acts did not fail."""
+
+
 def _render_script(simulator: Simulator, request: Request) -> Reply:
     settings = read_settings(request.settings())
     scene, lines = simulator.scene, request.texts[1:]
@@ -142,6 +146,8 @@ def _render_script(simulator: Simulator, request: Request) -> Reply:
     done, failure = ticks_done(scene.world, program, RULES)
     messages: dict[str, Any] = {str(agent): {"message": "Success"} for agent in range(len(scene.world.agents))}
     if failure is not None:
+        left = {step.agent for tick in list(program.ticks())[len(done) :] for step in tick}
+        messages |= {str(agent): {"message": STOPPED.format(line=len(done) + 1)} for agent in left}
         messages[str(failure.agent)] = {"message": failed(failure, program)}
     if settings.skip:
         return Reply(failure is None, _json(messages))

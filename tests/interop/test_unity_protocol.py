@@ -123,6 +123,15 @@ def test_pictures_of_every_mode(client):
     assert not refused["success"] and "does not draw the mode `albedo`" in refused["message"]
 
 
+def test_an_act_beside_one_that_failed_is_not_reported_as_done(client):
+    for room in ("kitchen", "kitchen"):
+        client.add_character(room=room)
+    ids = ids_of(client.graph())
+    walk = f"<char0> [walk] <fridge> ({ids['fridge']})"
+    done, told = client.render([walk, f"{walk} | <char1> [grab] <fridge> ({ids['fridge']})"])
+    assert not done and "from line 2 on" in told["0"]["message"] and "fridge" in told["1"]["message"]
+
+
 def test_flow_is_that_of_the_last_line(client):
     client.add_character(room="kitchen")
     top = client.ask("camera_count")["value"] - 7
