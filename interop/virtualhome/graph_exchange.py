@@ -15,7 +15,14 @@ from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph, Node, from_release, to_release
-from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, OPPOSITE, ROOM_CATEGORY
+from hearth.schemas.vocabulary import (
+    CHARACTER_CATEGORY,
+    CHARACTER_CLASS,
+    EVERY_STATE_ID,
+    OPPOSITE,
+    ROOM_CATEGORY,
+    STATES,
+)
 
 MOST_NODES = 20_000
 """Nodes of a graph that a client sends."""
@@ -206,6 +213,8 @@ def _contradictions(now: EnvironmentGraph, wanted: EnvironmentGraph) -> Iterable
             yield _fault(f"two nodes have the id {node.id}", "give each its own")
         nodes[node.id] = node
         for state in node.states:
+            if state not in EVERY_STATE_ID:
+                yield _fault(f"{_label(node)} has the unknown state {state[:40]}", f"states: {', '.join(STATES)}")
             if OPPOSITE.get(state) in node.states and state < OPPOSITE[state]:
                 yield _fault(f"{_label(node)} is both {state} and {OPPOSITE[state]}", "keep one of them")
     for node in now.nodes:

@@ -99,6 +99,10 @@ def renamed(graph, ids):
     next(node for node in graph["nodes"] if node["class_name"] == "fridge")["class_name"] = "sofa"
 
 
+def flying(graph, ids):
+    next(node for node in graph["nodes"] if node["class_name"] == "fridge")["states"].append("FLYING")
+
+
 def roomless(graph, ids):
     graph["nodes"] = [node for node in graph["nodes"] if node["id"] != ids["kitchen"]]
 
@@ -108,7 +112,7 @@ def roomless(graph, ids):
     [(both_states, "fridge (137) is both CLOSED and OPEN"), (two_places, "at once"), (circle, "on or in itself"),
      (nowhere, "box (2000) is nowhere"), (dangling, "there is no node 99999"), (twice, "two nodes have the id"),
      (unknown, "no class is called `flux capacitor`"), (renamed, "is a `fridge`, and the graph calls it `sofa`"),
-     (roomless, "lacks the room kitchen")],
+     (roomless, "lacks the room kitchen"), (flying, "fridge (137) has the unknown state FLYING")],
 )  # fmt: skip
 def test_graphs_that_contradict_themselves_change_nothing(client, edit, words):
     before = client.graph()
