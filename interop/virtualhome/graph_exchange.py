@@ -213,7 +213,7 @@ def _contradictions(now: EnvironmentGraph, wanted: EnvironmentGraph) -> Iterable
             yield _fault(f"two nodes have the id {node.id}", "give each its own")
         nodes[node.id] = node
         for state in node.states:
-            if state not in EVERY_STATE_ID:
+            if state not in EVERY_STATE_ID and node.class_name != CHARACTER_CLASS:  # characters are STANDING
                 yield _fault(f"{_label(node)} has the unknown state {state[:40]}", f"states: {', '.join(STATES)}")
             if OPPOSITE.get(state) in node.states and state < OPPOSITE[state]:
                 yield _fault(f"{_label(node)} is both {state} and {OPPOSITE[state]}", "keep one of them")
