@@ -120,7 +120,7 @@ def commands_drawn(number: int, written: Written) -> tuple[int, int]:
 
 
 def shares(name: str, every: int, right: int) -> Iterator[Figure]:
-    """How many, and the share that is right."""
+    """Yield the number, and the share that is right."""
     yield Figure(f"{name}: written", every, "")
     yield Figure(f"{name}: parsed and legal", 100 * right / every, "%", target=100)
 

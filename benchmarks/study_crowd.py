@@ -71,7 +71,7 @@ WAYS: dict[str, str] = {
 
 @dataclass
 class Person:
-    """Somebody who takes part.
+    """A simulated participant.
 
     Attributes:
         number: from 0.
@@ -93,7 +93,7 @@ class Person:
         return f"/study/?PROLIFIC_PID=p{self.number}&STUDY_ID=s&SESSION_ID=x{self.number}"
 
     def words(self, trial: int) -> str:
-        """What the person writes after a trial."""
+        """Return the text of the person after a trial."""
         if self.way == "repeated":
             return "It was quite all right."
         if self.way == "gibberish":
@@ -191,7 +191,7 @@ def _batches(people: list[Person], size: int) -> Iterator[list[Person]]:
 
 
 def compared(people: list[Person], server: Server, folder: Path) -> list[str]:
-    """What the desk, the list for payment, the tables and the report have otherwise than each person."""
+    """Return the differences of the desk, the payments, the tables and the report from the people."""
     found: list[str] = []
     with httpx.Client(base_url=server.address, headers={"authorization": f"Bearer {server.desk}"}, timeout=120) as desk:
         listed = {

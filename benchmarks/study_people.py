@@ -65,7 +65,7 @@ HALT = (ConnectionClosed, OSError, httpx.HTTPError)
 
 @dataclass
 class Person:
-    """Somebody who takes part, and what the server confirmed.
+    """A simulated participant, and the answers that the server confirmed.
 
     Attributes:
         token: of the session.

@@ -18,6 +18,7 @@ from hearth.envs.text_layout import (
     layout,
     placement,
     printable,
+    runs,
     said_rows,
     stated,
 )
@@ -368,7 +369,7 @@ def _by_class(home: Home, nodes: int, between: str = " | ") -> str:
     groups: dict[str, list[int]] = {}
     for i in indices(nodes):
         groups.setdefault(home.classes[i], []).append(home.ids[i])
-    return between.join([f"{class_words(name)} {_runs(ids)}" for name, ids in groups.items()])
+    return between.join([f"{class_words(name)} {runs(ids)}" for name, ids in groups.items()])
 
 
 @lru_cache(maxsize=65_536)
@@ -385,17 +386,6 @@ def _summed(home: Home, nodes: int) -> str:
     """Return how many some nodes are; the class of one alone."""
     number = nodes.bit_count()
     return f"{number} things" if number > 1 else _counted(home, nodes)
-
-
-def _runs(ids: Iterable[int]) -> str:
-    """Return ascending numbers, three and more in a row as the first and the last: `66-69 74`."""
-    runs: list[list[int]] = []
-    for number in ids:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    return " ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else " ".join(map(str, run)) for run in runs)
 
 
 def said_step(text: str) -> str:

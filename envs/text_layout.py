@@ -6,6 +6,7 @@ that it depends on.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -185,3 +186,14 @@ def said_rows(world: World, kept: int, place: Layout) -> tuple[int, ...]:
     """Return the shown nodes in each of the states that texts say."""
     shut, states = kept & (place.hollow | place.home.doors), world.states
     return tuple([states[number] & (shut if closed else kept) for number, _, closed in SAID_STATES])
+
+
+def runs(ids: Iterable[int]) -> str:
+    """Return ascending numbers, three and more in a row as the first and the last: `66-69 74`."""
+    found: list[list[int]] = []
+    for number in ids:
+        if found and number == found[-1][-1] + 1:
+            found[-1].append(number)
+        else:
+            found.append([number])
+    return " ".join(f"{run[0]}-{run[-1]}" if len(run) > 2 else " ".join(map(str, run)) for run in found)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from hearth.kb.knowledge import Knowledge
 from hearth.kb.language.noun_phrases import things_in
 from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
@@ -14,7 +13,7 @@ from hearth.kb.language.step_understanding import Candidate
 from hearth.models.reading.clause_matches import matches, plain_words, variants
 from hearth.models.reading.kept_states import BACKWARD, BANNED_PLACE, CHANGES, FURTHER, HANDS_OFF, LEFT_ALONE, STAYS
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
-from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in
+from hearth.models.reading.mentions import SEVERAL, Mention, mentions_in, refers_back
 from hearth.models.reading.request_table import ActTemplate, Pattern, Request, is_slot, number_in, words
 from hearth.models.reading.rewordings import TAKES_TOOL, rewordings
 from hearth.models.reading.spoken_things import ANY_ACT, NO_ACT, Act, Clause, Spoken, bound, spoken_of, together
@@ -236,7 +235,7 @@ class ClauseReader:
             made = self._made(way, things, count, text)
             if made is not None:
                 acts, named = made
-                is_back = {name for name in pattern.needs if slots[name] and _is_back(self.known, slots[name])}
+                is_back = {name for name in pattern.needs if slots[name] and refers_back(self.known, slots[name])}
                 goals = tuple(each for goal in request.goal for each in bound(goal, things, named))
                 spoken = spoken_of(acts, things, way, is_back, named)
                 return Clause(acts, goals, (*spoken, *self._places(slots.values())))
@@ -398,7 +397,3 @@ class ClauseReader:
             return before
         refs = self.scene.some((name,), number)
         return refs[number - 1] if refs else None
-
-
-def _is_back(known: Knowledge, text: str) -> bool:
-    return all(each.back for each in mentions_in(known, text))

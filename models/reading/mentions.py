@@ -332,3 +332,8 @@ def is_adjective(word: str) -> bool:
     if "ADJ" in kinds:
         return True
     return is_verb(word) and word.endswith(("ed", "ing")) and word not in ("ironing", "dining", "washing", "cutting")
+
+
+def refers_back(known: Knowledge, text: str) -> bool:
+    """Return whether a text speaks only of things that were spoken of before."""
+    return all(each.back for each in mentions_in(known, text))

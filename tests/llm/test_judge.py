@@ -1,4 +1,4 @@
-"""Judges: what they are shown and asked, verdicts that are read, and agreement that shows a judge who does not look."""
+"""Judges: their prompts, the verdicts that are read, and figures by which a null judge is seen."""
 
 from __future__ import annotations
 
