@@ -76,7 +76,7 @@ class Consequence:
     """The part of an action that action set 3 adds: all there is to an act that sets 1 and 2 do not execute.
 
     Attributes:
-        preconditions: the checks, of an act that only set 3 executes.
+        preconditions: the checks, of an act that only set 3 executes; those that it makes besides, of another.
         effects: its changes, after those of the action itself; conditions are read in the world before.
         like: the action whose rule it shares, or ''.
         ticks: how long it takes.

@@ -128,7 +128,7 @@ def augment(
         original = sampled[0].conditions, sampled[1]
     conditions, execution = original
     goal = achieved(execution)
-    wanted = circumstances(execution)
+    wanted = circumstances(execution, conditions)
     generator = rng(seed, "perturb", base.home.name, record_id)
     seen: set[object] = {_shape(program)}
     pairs: list[Pair] = []

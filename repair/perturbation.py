@@ -12,8 +12,19 @@ from random import Random
 from hearth.grounding.environments.condition_violation import closes
 from hearth.grounding.environments.default_state import Base
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
+from hearth.grounding.preconditions.usual_states import usual_states
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.literals import CHARACTER, STATE_OF, Key, Literal
+from hearth.kb.knowledge_records import Action
+from hearth.schemas.failures import Code
+from hearth.schemas.literals import (
+    CHARACTER,
+    DONE_OF_SET_3,
+    LACK_OF_SET_3,
+    STATE_OF,
+    STATE_OF_SET_3,
+    Key,
+    Literal,
+)
 from hearth.schemas.program import Program
 from hearth.simulation.world.bits import indices
 
@@ -299,6 +310,41 @@ def _seated(case: Case) -> Iterator[Perturbation]:
         yield Perturbation("seated", (), (Condition(Literal("sitting", (CHARACTER,))),))
 
 
+def _done(case: Case) -> Iterator[Perturbation]:
+    """Yield a thing that a step would fold, cover or write on is so already; checks of action set 3 say which step."""
+    seen: set[Key] = set()
+    for number, step in enumerate(case.program.steps):
+        action = case.knowledge.actions.get(step.action)
+        if action is not None and step.objects and step.objects[0].key not in seen:
+            key = step.objects[0].key
+            for name in _made(action):
+                yield Perturbation("done", (), (Condition(Literal(name, (key,)), number),))
+                seen.add(key)
+
+
+def _made(action: Action) -> Iterator[str]:
+    """Yield the conditions that an action refuses and makes: of Fold that its object is folded."""
+    made = {str(effect.literal) for effect in action.effects}
+    for check in action.preconditions:
+        literal = check.formula
+        if check.code is Code.WRONG_STATE and isinstance(literal, Literal) and literal.negated:
+            name = literal.terms[-1].name.lower()
+            if str(literal.atom) in made and name in DONE_OF_SET_3:
+                yield name
+
+
+def _unusual(kind: str) -> Perturber:
+    """Things of which something else is so than people take for granted, by the rows of `usual_states.yaml`."""
+
+    def unusual(case: Case) -> Iterator[Perturbation]:
+        for condition in case.conditions:
+            row = usual_states().get(condition.name)
+            if row is not None and row.violated is not None and row.violated[0] == kind and not condition.hard:
+                yield Perturbation(kind, (condition,), (condition.instead(row.violated[1]),))
+
+    return unusual
+
+
 PERTURBATIONS: dict[str, Perturber] = {
     "sitting": _swap("sitting", {"sitting": ""}),
     "lying": _swap("lying", {"lying": ""}),
@@ -316,6 +362,8 @@ PERTURBATIONS: dict[str, Perturber] = {
     "door": _door,
     "pet": _pet,
     "seated": _seated,
+    "done": _done,
+    **{row.violated[0]: _unusual(row.violated[0]) for row in usual_states().values() if row.violated},
 }
 """Every kind of perturbation. To add one: a function, a row here, its probability in perturbations.yaml, a test."""
 
@@ -329,8 +377,13 @@ _MATTER: dict[str, str] = {
     }.items() for name in names},
     **dict.fromkeys(("sitting", "lying"), "posture"),
     **dict.fromkeys(("free", "occupied", "pet"), "seat"),
+    **{name: pair for pair, names in {
+        "temperature": ("cold", "hot"), "content": ("empty", "full"), "cut": ("cut", "uncut"),
+        "wear": ("broken", "intact"),
+    }.items() for name in names},
+    **{name: name for name in DONE_OF_SET_3},
     "full_hands": "hands", "holds": "hands", "doors_closed": "way", "facing": "view", "facing_away": "view",
 }  # fmt: skip
 """The matter of each condition; others are about the place of their first object."""
 
-assert set(_MATTER) >= {*STATE_OF, "sitting", "lying", "free", "occupied"}
+assert set(_MATTER) >= {*STATE_OF, *STATE_OF_SET_3, *LACK_OF_SET_3, "sitting", "lying", "free", "occupied"}

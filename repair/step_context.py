@@ -4,15 +4,18 @@ An activity is more than its end: a person that types standing and sits down aft
 that sits down to type.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
+from hearth.grounding.preconditions.conditions import Condition
 from hearth.grounding.preconditions.postconditions import Postconditions, facts, missing, nodes_of
+from hearth.grounding.preconditions.usual_states import usual_states
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.engine import Execution
+from hearth.simulation.literal_truth import holds
 
 RESTING = ("SITTING", "LYING")
 
@@ -31,12 +34,13 @@ class Lost(NamedTuple):
     facts: Postconditions
 
 
-def circumstances(execution: Execution) -> tuple[Postconditions, ...]:
+def circumstances(execution: Execution, conditions: Iterable[Condition] = ()) -> tuple[Postconditions, ...]:
     """For each step of a program that runs, what holds before it and repairs have to keep.
 
     Circumstances are the posture of the step's character and its seat in the program; that it does not hold an object
     of the step; and the results of the earlier steps: objects held, open, on, plugged in and clean, and objects ON or
-    INSIDE others. Facts of the environment, rooms, and the targets of pouring do not count.
+    INSIDE others. Facts of the environment, rooms, and the targets of pouring do not count. Of the program's conditions
+    those count that people take for granted of a thing in action set 3: the plate eaten from is clean.
     """
     program, worlds = execution.program, execution.worlds
     nodes = nodes_of(program, worlds[0])
@@ -51,12 +55,14 @@ def circumstances(execution: Execution) -> tuple[Postconditions, ...]:
     for before, after in pairwise(now):
         made.append(made[-1] & after | after - before)
     found = []
-    for step, tick in zip(program.steps, _ticks(program), strict=True):
+    usual = [each for each in conditions if each.name in usual_states() and not each.hard]
+    for number, (step, tick) in enumerate(zip(program.steps, _ticks(program), strict=True)):
         character = (CHARACTER_CLASS, step.agent + 1)
         others = (f for f in made[tick] if f.subject[0] != CHARACTER_CLASS or f.name == HOLDS)
         held = (Literal(HOLDS, (character, ref.key)) for ref in step.objects)
         free = (f._replace(negated=True) for f in held if f not in now[tick])
-        found.append((*_posture(character, now[tick]), *sorted(others), *free))
+        taken = (each.literal for each in usual if each.step == number and holds(each.literal, worlds[tick], nodes))
+        found.append((*_posture(character, now[tick]), *sorted(others), *free, *taken))
     return tuple(found)
 
 

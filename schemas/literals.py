@@ -35,6 +35,23 @@ STATE_OF: dict[str, str] = {
 }
 """Conditions about an object's own state, by the release's names for them."""
 
+DONE_OF_SET_3 = ("covered", "folded", "uncovered", "unfolded", "unwrapped", "wrapped")
+"""Conditions that an act of action set 3 makes and refuses: what is folded is not folded again."""
+
+STATE_OF_SET_3: dict[str, str] = {
+    "broken": "BROKEN",
+    "cold": "COLD",
+    "cut": "CUT",
+    "empty": "EMPTY",
+    "full": "FULL",
+    "hot": "HOT",
+    **{name: name.upper() for name in DONE_OF_SET_3},
+}
+"""Conditions about an object's own state that only worlds of action set 3 simulate."""
+
+LACK_OF_SET_3: dict[str, tuple[str, ...]] = {"uncut": ("CUT",), "intact": ("BROKEN",)}
+"""Conditions that an object is in none of some states, which only worlds of action set 3 simulate."""
+
 NAME_OF = {state: name for name, state in STATE_OF.items()}
 
 RELATION_OF: dict[str, str] = {

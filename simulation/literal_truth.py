@@ -8,7 +8,18 @@ from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar
 
-from hearth.schemas.literals import AGENT, HANDS, HOLDS, RELATION_OF, STATE_OF, Key, Literal, Name
+from hearth.schemas.literals import (
+    AGENT,
+    HANDS,
+    HOLDS,
+    LACK_OF_SET_3,
+    RELATION_OF,
+    STATE_OF,
+    STATE_OF_SET_3,
+    Key,
+    Literal,
+    Name,
+)
 from hearth.schemas.vocabulary import CHARACTER_CLASS, EVERY_STATE_ID, STATE_ID, STATES
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
@@ -164,6 +175,10 @@ def _kept(name: str, world: World, i: int) -> bool:
     return name in world.home.node(i).states
 
 
+def _lacks(states: tuple[str, ...], world: World, i: int) -> bool:
+    return not any(_kept(name, world, i) for name in states)
+
+
 def binary(name: str) -> Binary:
     """Return the predicate of two terms; a relation that is not simulated holds where the graph stores it."""
     return BINARY.get(name) or (lambda world, i, targets: _stored(world, i, name) & targets)
@@ -279,6 +294,8 @@ def _facing_away(world: World, i: int, targets: int) -> int:
 UNARY: dict[str, Unary] = {
     **{name: _state(name) for name in STATES},
     **{name: _state(state) for name, state in STATE_OF.items()},
+    **{name: partial(_kept, state) for name, state in STATE_OF_SET_3.items()},
+    **{name: partial(_lacks, states) for name, states in LACK_OF_SET_3.items()},
     "sitting": _state("SITTING"),
     "lying": _state("LYING"),
     "free": _free,

@@ -3,11 +3,13 @@
 from collections.abc import Callable
 
 from hearth.grounding.environments import condition_violation
+from hearth.grounding.environments.default_state import DRINK
 from hearth.grounding.environments.environment_draft import PartialEnvironment
 from hearth.grounding.preconditions.conditions import Condition, Preconditions
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Placement
 from hearth.schemas.graph import Edge
-from hearth.schemas.literals import CHARACTER, HANDS, STATE_OF, Key
+from hearth.schemas.literals import CHARACTER, HANDS, LACK_OF_SET_3, STATE_OF, STATE_OF_SET_3, Key
 from hearth.simulation.world.affordance import is_of_kind
 from hearth.simulation.world.bits import indices
 
@@ -16,12 +18,43 @@ Fulfil = Callable[[PartialEnvironment, Condition], None]
 
 def fulfil(partial: PartialEnvironment, conditions: Preconditions) -> None:
     """Satisfy every condition that placing has not satisfied already."""
+    of_states = [condition for condition in conditions if condition.name in _FURTHER]
     for condition in conditions:
+        if condition.name not in _FURTHER:
+            FULFIL[condition.name](partial, condition)
+    for condition in of_states:  # last: what is full is not moved any more
         FULFIL[condition.name](partial, condition)
+
+
+_FURTHER = frozenset((*STATE_OF_SET_3, *LACK_OF_SET_3))
+"""Conditions about states of action set 3."""
 
 
 def _state(partial: PartialEnvironment, condition: Condition) -> None:
     partial.set_state(_node(partial, condition.objects[0]), STATE_OF[condition.name])
+
+
+def _further_state(partial: PartialEnvironment, condition: Condition) -> None:
+    """Put a thing into a state of action set 3 and out of those that it excludes; what is full has a drink in it."""
+    node_id, state = _node(partial, condition.objects[0]), STATE_OF_SET_3[condition.name]
+    partial.set_further(node_id, (state,), partial.base.knowledge.excludes(state))
+    if condition.name == "full" and not _is_held(partial, node_id):
+        vessel = condition.objects[0][0]
+        drinks = [p.object for p in partial.base.knowledge.holds(vessel) if _is_poured(partial, p)]
+        if drinks:
+            content = partial.add(partial.rng.choice(drinks), partial.room_of(node_id))
+            partial.put(content, "INSIDE", node_id)
+
+
+def _is_poured(partial: PartialEnvironment, placement: Placement) -> bool:
+    """Return whether a placement is of a drink that is poured into something, not of one in its carton."""
+    name, holder = placement.object, placement.destination
+    is_drink = DRINK in partial.base.knowledge.ancestors(name)
+    return placement.relation == "IN" and is_drink and not partial.base.towers_over(name, holder)
+
+
+def _lacks(partial: PartialEnvironment, condition: Condition) -> None:
+    partial.set_further(_node(partial, condition.objects[0]), (), LACK_OF_SET_3[condition.name])
 
 
 def _node(partial: PartialEnvironment, key: Key) -> int:
@@ -149,6 +182,8 @@ def _done(partial: PartialEnvironment, condition: Condition) -> None:
 
 FULFIL: dict[str, Fulfil] = {
     **dict.fromkeys(STATE_OF, _state),
+    **dict.fromkeys(STATE_OF_SET_3, _further_state),
+    **dict.fromkeys(LACK_OF_SET_3, _lacks),
     "in": _stands("ON"),
     "inside": _stands("INSIDE"),
     "location": _done,

@@ -128,12 +128,11 @@ class Base:
         """
         places = self._places(name)
         if DRINK in self.knowledge.ancestors(name):
-            places = (place for place in places if not self._towers_over(name, place[0]))
+            places = (place for place in places if not self.towers_over(name, self.home.classes[place[0][1]]))
         return _weighted(places)
 
-    def _towers_over(self, name: str, spot: tuple[str, int, str]) -> bool:
-        """Return whether a spot is inside drinkware that is smaller than a thing of a class."""
-        holder = self.home.classes[spot[1]]
+    def towers_over(self, name: str, holder: str) -> bool:
+        """Return whether drinkware of a class is smaller than a thing of another class."""
         thing, vessel = map(self.knowledge.object_class, (name, holder))
         if thing is None or vessel is None or DRINKWARE not in self.knowledge.ancestors(holder):
             return False

@@ -1,12 +1,15 @@
 """A partial environment: nodes and edges added and removed, states set, and the binding of objects to nodes."""
 
+from collections.abc import Iterable
 from random import Random
 
 from hearth.grounding.environments.default_state import Base
 from hearth.schemas.graph import Edge, Node
+from hearth.schemas.graph_change import State
 from hearth.schemas.literals import Key
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, OPPOSITE
 from hearth.simulation.world.bits import indices
+from hearth.simulation.world.derived_homes import restate_further
 from hearth.simulation.world.edit import Movable, extended
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.node_states import states_of
@@ -21,6 +24,7 @@ class PartialEnvironment:
         nodes: new nodes.
         added, removed: edges.
         states: changed states by node id.
+        entered, left: pairs of a node id and one of the further states of action set 3, which it enters or leaves.
         binding: the program's objects.
         room: room's node id by node id, for nodes that are not where the base has them.
         where: (relation, node id) a node stands ON or INSIDE, for nodes placed here.
@@ -40,6 +44,8 @@ class PartialEnvironment:
         self.added: list[Edge] = []
         self.removed: list[Edge] = []
         self.states: dict[int, tuple[str, ...]] = {}
+        self.entered: list[State] = []
+        self.left: list[State] = []
         self.binding: dict[Key, int] = {}
         self.room: dict[int, int] = {}
         self.where: dict[int, tuple[str, int]] = {}
@@ -52,7 +58,10 @@ class PartialEnvironment:
 
     def home(self) -> Home:
         """Return the home with all changes."""
-        return extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
+        new = extended(self.base.home, self.nodes, self.added, self.removed, self.states, self.movable)
+        if self.entered or self.left:
+            restate_further(new, self.left, self.entered)
+        return new
 
     def room_of(self, node_id: int) -> int:
         """Id of the room a node is in, or -1."""
@@ -127,6 +136,11 @@ class PartialEnvironment:
         now = self.states_now(node_id)
         excluded = (state, *self.base.knowledge.excludes(state), OPPOSITE.get(state))
         self.states[node_id] = (*(name for name in now if name not in excluded), state)
+
+    def set_further(self, node_id: int, states: Iterable[str], instead: Iterable[str]) -> None:
+        """Put a node into further states of action set 3, and out of others."""
+        self.left += ((node_id, name) for name in instead)
+        self.entered += ((node_id, name) for name in states)
 
     def states_now(self, node_id: int) -> tuple[str, ...]:
         """Return the states of a node so far."""

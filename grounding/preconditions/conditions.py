@@ -56,7 +56,7 @@ _IN_WORDS = {
     "doors_closed": "behind closed doors", "pet": "under a pet", "in": "on", "location": "in",
     "atreach": "within reach of", "nearby": "within reach of", "facing_away": "facing away from", "holds": "held by",
     "together": "in the same room as", "other_room": "in another room than", "not_near": "out of reach of",
-    "in_closed_container": "in something closed",
+    "in_closed_container": "in something closed", "uncut": "not cut",
 }  # fmt: skip
 """The part of a condition's meaning that its name alone does not give."""
 

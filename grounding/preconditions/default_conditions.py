@@ -6,13 +6,15 @@ They make environments realistic; a program that can't run with one of them runs
 from collections.abc import Iterator
 
 from hearth.grounding.preconditions.conditions import Condition
+from hearth.grounding.preconditions.usual_states import usual_conditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.literals import Key, Literal
 from hearth.schemas.program import Program
 
 
 def default_conditions(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Yield the soft conditions of a program, in step order."""
+    """Yield the soft conditions of a program: states of its things first, which are given up last."""
+    yield from usual_conditions(program, knowledge)
     yield from _locations(program, knowledge)
     yield from _contents(program, knowledge)
     yield from _supports(program, knowledge)

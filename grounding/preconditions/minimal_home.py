@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from hearth.grounding.preconditions.conditions import Preconditions
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Edge, Node
-from hearth.schemas.literals import CHARACTER, HANDS, RELATION_OF, STATE_OF, Key
+from hearth.schemas.literals import CHARACTER, HANDS, RELATION_OF, STATE_OF, STATE_OF_SET_3, Key
 from hearth.schemas.program import Program
 from hearth.schemas.vocabulary import CHARACTER_CATEGORY, CHARACTER_CLASS, ROOM_CATEGORY
 from hearth.simulation.world.home import Home
@@ -65,10 +65,13 @@ def _character(conditions: Preconditions) -> Node:
 
 def _node(node_id: int, key: Key, conditions: Preconditions, knowledge: Knowledge) -> Node:
     thing = knowledge.object_class(key[0])
-    states = tuple(STATE_OF[c.name] for c in conditions if c.name in STATE_OF and c.objects[0] == key)
+    states = tuple(_STATES[c.name] for c in conditions if c.name in _STATES and c.objects[0] == key)
     if thing is None:
         return Node(node_id, key[0], "", (), states)
     return Node(node_id, key[0], thing.category, tuple(sorted(thing.properties)), states)
+
+
+_STATES = STATE_OF | STATE_OF_SET_3
 
 
 def _rooms(

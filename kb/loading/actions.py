@@ -17,10 +17,10 @@ from hearth.schemas.literals import Literal
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "calls", "groups",
-                          "source", "set", "then", "like", "ticks", "notice", "unless"})  # fmt: skip
+                          "source", "set", "then", "like", "ticks", "notice", "unless", "besides"})  # fmt: skip
 _ACTION_SHAPES = {"needs": LIST, "before": LIST, "effects": LIST, "roles": NAMES, "words": NAMES, "aliases": NAMES,
                   "calls": NAMES, "groups": NAMES, "say": TEXT, "source": TEXT, "then": LIST, "like": TEXT,
-                  "notice": TEXT, "unless": LIST}  # fmt: skip
+                  "notice": TEXT, "unless": LIST, "besides": LIST}  # fmt: skip
 _INHERITED = ("groups", "calls")
 _REQUIREMENT_SHAPES = dict.fromkeys(("any", "all", "classes", "contains"), NAMES) | {"also": REASONS, "never": REASONS}
 _REPAIR_SHAPES = {"on": TEXT, "actions": NAMES, "when": TEXT, "say": TEXT, "source": TEXT}
@@ -125,9 +125,11 @@ def _later(
         faults.at(at, f"{name} is like `{like:.40}`", "an action that sets 1 and 2 execute")
     more = _all_effects(name, fields.get("then") or (), at, entries, faults)
     unless = tuple(_excuses(name, fields.get("unless") or (), own[0], at, faults))
+    besides = tuple(_further_checks(name, fields.get("besides") or (), at, faults))
     if not _only_later(at):
         notice = str(fields.get("notice") or "")
-        return Consequence((), more, "", ticks, notice, unless) if more or unless or "ticks" in fields else None
+        known = more or unless or besides or "ticks" in fields
+        return Consequence(besides, more, "", ticks, notice, unless) if known else None
     return Consequence(own[0], own[1] + more, like, ticks, str(fields.get("notice") or ""))
 
 
@@ -143,6 +145,18 @@ def _excuses(
             yield found
         else:
             faults.at(at, f"`unless` of {name} is `{literal}`", "write `FAILURE_CODE: state(o, STATE)`")
+
+
+def _further_checks(name: str, rows: Iterable[Any], at: Entry, faults: Faults) -> Iterator[Condition]:
+    """Yield the checks that set 3 makes besides: the first object is not in a state."""
+    for found in _conditions(rows, at, faults):
+        literal = found.formula
+        if _only_later(at):
+            faults.at(at, f"`besides` of {name}: set 3 makes all its checks", "write them under `before`")
+        elif isinstance(literal, Literal) and literal.negated and _is_state_of_first(literal.atom):
+            yield found
+        else:
+            faults.at(at, f"`besides` of {name} is `{literal}`", "write `FAILURE_CODE: not state(o, STATE)`")
 
 
 def _is_state_of_first(literal: Literal[Term]) -> bool:

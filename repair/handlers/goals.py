@@ -1,7 +1,9 @@
 """The program runs, but what it was for is not reached (thesis eq. A.1), or a step is done in other circumstances."""
 
+from hearth.grounding.preconditions.usual_states import usual_states
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before
 from hearth.repair.handlers.posture import places_to_rest
+from hearth.repair.handlers.states import restoring
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step
@@ -21,6 +23,9 @@ def circumstances_lost(context: RepairContext) -> Edit | None:
     """Bring about the conditions in which the step was done: get up, then prepare things, then take the seat."""
     for fact in sorted(context.missed, key=lambda fact: (not fact.negated, _rank(fact))):
         steps = _undone(context, fact) if fact.negated else _steps(context, fact)
+        if fact.name in usual_states():
+            index = context.world.home.index[context.nodes[fact.subject]]
+            steps = restoring(context, usual_states()[fact.name], index)
         if steps:
             return before(context, "circumstances_lost", *steps)
     return None

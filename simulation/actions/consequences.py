@@ -68,6 +68,8 @@ def _followed(action: Action, later: Consequence, knowledge: Knowledge) -> Actio
     """Return an action of set 2 with the additions of set 3."""
     if later.unless:
         return _excused(_followed(action, replace(later, unless=()), knowledge), later, knowledge)
+    if later.preconditions:
+        return _checked(_followed(action, replace(later, preconditions=()), knowledge), later)
     if not later.effects:
         return action
 
@@ -91,6 +93,33 @@ def _followed(action: Action, later: Consequence, knowledge: Knowledge) -> Actio
             return effects(world, result, world.agents[number], o, s, rules)
 
     return Action(action.name, rule, action.mask)
+
+
+def _checked(action: Action, later: Consequence) -> Action:
+    """Return an action that is refused in a few more states of its first object, after its own checks."""
+    states = [str(each.formula.terms[1].name) for each in later.preconditions if isinstance(each.formula, Literal)]
+    rows = [(EVERY_STATE_ID[name], name) for name in states]
+    code = later.preconditions[0].code
+
+    def rule(world: World, number: int, o: int, s: int, rules: Rules) -> World | Failure:
+        result = action.rule(world, number, o, s, rules)
+        if type(result) is World:
+            for row, name in rows:
+                if row < len(world.states) and world.states[row] >> o & 1:
+                    return refuse(world, code, *_wanted(f"not state(o, {name})", world, o), o)
+        return result
+
+    def masks(situation: Situation) -> Masks:
+        found, states = action.mask(situation), situation.world.states
+        never = 0
+        for row, _ in rows:
+            never |= states[row] if row < len(states) else 0
+        if not never or found is None:
+            return found
+        left = (found[0] & ~never, *found[1:])
+        return left if left[0] else None
+
+    return Action(action.name, rule, masks)
 
 
 def _excused(action: Action, later: Consequence, knowledge: Knowledge) -> Action:
@@ -232,13 +261,18 @@ def _wanted(words: str, world: World, o: int) -> tuple[str, str]:
 
 
 def _undoing(state: str, world: World, o: int) -> Iterator[str]:
-    """Yield the acts that bring a thing out of a state, if they can be done to it."""
+    """Yield the acts that bring a thing out of a state, if it can be one of their objects."""
     knowledge = world.home.knowledge
-    others = {f"state(o, {other})" for other in knowledge.excludes(state)}
     for known in knowledge.actions.values():
-        effects = known.later.effects if known.later else ()
-        if any(str(effect.literal) in others for effect in effects) and world.home.able(known.name) >> o & 1:
-            yield known.name
+        for effect in (*known.effects, *(known.later.effects if known.later else ())):
+            subject, *others = effect.literal.terms
+            position = "os".find(subject.name)
+            ends = effect.literal.name == "state" and others[0].name in (
+                (state,) if effect.literal.negated else knowledge.excludes(state)
+            )
+            if ends and position >= 0 and not subject.function and world.home.able(known.name, position) >> o & 1:
+                yield known.name
+                break
 
 
 def _masks(s: Situation, known: Known, checks: tuple[_Check, ...]) -> Masks:

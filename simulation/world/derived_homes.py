@@ -113,7 +113,7 @@ def changed(home: Home, change: Change) -> Home:
     ordered = {node_id: sorted(names) for node_id, names in states.items()}
     new = extended(home, change.added_nodes, change.added, change.removed, ordered)
     if simulated != change:
-        _restate_further(new, change.cleared_states, change.set_states)
+        restate_further(new, change.cleared_states, change.set_states)
     return new
 
 
@@ -123,7 +123,7 @@ def _simulated(states: tuple[State, ...]) -> tuple[State, ...]:
     return tuple(each for each in states if each[1] in STATE_ID) if further else states
 
 
-def _restate_further(home: Home, left: Iterable[State], entered: Iterable[State]) -> None:
+def restate_further(home: Home, left: Iterable[State], entered: Iterable[State]) -> None:
     """Change the further states of a new home's start (action set 3)."""
     found = dict(zip(FURTHER_STATES, home.further, strict=True))
     for states, change in ((left, cleared), (entered, or_)):
