@@ -17,15 +17,17 @@ from numpy.typing import NDArray
 from hearth.envs.edge_arrays import Edges, seen_edges, start_edges
 from hearth.envs.goal_arrays import GOAL_COLUMNS, class_number, goal_array
 from hearth.envs.node_slots import Slots
+from hearth.kb.action_sets import states_of_set
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.vocabulary import RELATIONS, STATES
+from hearth.schemas.vocabulary import RELATIONS
 from hearth.simulation.goals import Progress
 from hearth.simulation.motion import positions
 from hearth.simulation.motion.ground import ground_of
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.views import Pose, View
+from hearth.simulation.world.action_set_3_states import rows_with_further
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.home import Home
 
@@ -111,7 +113,7 @@ class Encoder:
             "seen": MultiBinary(sizes.nodes),
             "classes": Box(0, classes, (sizes.nodes,), np.int16),
             "categories": Box(0, kinds + 1, (sizes.nodes,), np.int16),
-            "states": MultiBinary((sizes.nodes, len(STATES))),
+            "states": MultiBinary((sizes.nodes, len(states_of_set(self.knowledge.action_set)))),
             "close": MultiBinary(sizes.nodes),
             "places": Box(-FAR, FAR, (sizes.nodes, 2), np.float32),
             "edges": Box(-1, max(sizes.nodes, len(RELATIONS)), (sizes.edges, 3), np.int16),
@@ -162,7 +164,8 @@ class Encoder:
             raise _too_many("agents", len(world.agents), sizes.agents)
         slots = rows.slots
         close = reach.close_to(world, world.agents[view.agent])
-        seen, near, *states = slots.rows([mask & view.mask for mask in (view.mask, close, *world.states)])
+        rows_of = rows_with_further(world)[: len(states_of_set(self.knowledge.action_set))]
+        seen, near, *states = slots.rows([mask & view.mask for mask in (view.mask, close, *rows_of)])
         return {
             "seen": seen,
             "classes": rows.classes * seen,

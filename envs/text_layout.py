@@ -12,9 +12,10 @@ from functools import lru_cache
 
 from hearth.envs.text_agent import USUAL
 from hearth.envs.text_protocol_settings import Protocol
-from hearth.schemas.vocabulary import CHARACTER_CATEGORY, STATE_ID
+from hearth.schemas.vocabulary import CHARACTER_CATEGORY, EVERY_STATE_ID, FURTHER_STATES, STATE_ID
 from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.world import edge_rows
+from hearth.simulation.world.action_set_3_states import is_wide
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.moved_edges import BEARS, CONTENTS
@@ -30,6 +31,9 @@ SAID_STATES = tuple(
     if name not in USUAL and name != "OFF"
 )
 """States that texts say: number, words, and whether only doors and containers have it said."""
+
+SAID_FURTHER = tuple((EVERY_STATE_ID[name], name.lower().replace("_", " "), False) for name in FURTHER_STATES)
+"""Those of worlds of action set 3, besides: what is hot, dirty, cut or empty."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,13 +170,13 @@ def stated(place: Layout, rows: tuple[int, ...], doors: int, room: int | None) -
 
     Args:
         place: of the home.
-        rows: the nodes in each of `SAID_STATES`.
+        rows: the nodes in each of `SAID_STATES`, and of `SAID_FURTHER` in a world of action set 3.
         doors: those that are shown.
         room: id of the agent's, to which doors are not said to lead.
     """
     home = place.home
     found: dict[int, list[str]] = {}
-    for (_, words, _), row in zip(SAID_STATES, rows, strict=True):
+    for (_, words, _), row in zip((*SAID_STATES, *SAID_FURTHER), rows, strict=False):
         for i in indices(row):
             found.setdefault(i, []).append(words)
     for i in indices(doors):
@@ -185,7 +189,8 @@ def stated(place: Layout, rows: tuple[int, ...], doors: int, room: int | None) -
 def said_rows(world: World, kept: int, place: Layout) -> tuple[int, ...]:
     """Return the shown nodes in each of the states that texts say."""
     shut, states = kept & (place.hollow | place.home.doors), world.states
-    return tuple([states[number] & (shut if closed else kept) for number, _, closed in SAID_STATES])
+    said = (*SAID_STATES, *SAID_FURTHER) if is_wide(world) else SAID_STATES
+    return tuple([states[number] & (shut if closed else kept) for number, _, closed in said])
 
 
 def runs(ids: Iterable[int]) -> str:

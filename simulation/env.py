@@ -20,6 +20,7 @@ from hearth.simulation.actions.legal import Legal, legal
 from hearth.simulation.instructions import instruction_of
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.observation.views import LastAction, View, view
+from hearth.simulation.processes import widened
 from hearth.simulation.rules import DEFAULT, Rules
 from hearth.simulation.world.bits import indices
 from hearth.simulation.world.edit import edit, free_id
@@ -110,7 +111,8 @@ class Env:
         if isinstance(home, str):
             home = self._home(home)
         world = with_agents(World.start(home) if isinstance(home, Home) else home, agents, seed)
-        self.restore(placed(world, rng(seed, "poses", world.home.name)))
+        begun = placed(world, rng(seed, "poses", world.home.name))
+        self.restore(widened(begun) if self.rules.consequences else begun)
         return {number: self.observe(number) for number in range(len(self.world.agents))}
 
     def restore(self, world: World) -> None:

@@ -8,7 +8,7 @@ from hearth.kb.knowledge_records import Condition
 from hearth.schemas.failures import Failure
 from hearth.schemas.literals import Literal
 from hearth.schemas.program import Step
-from hearth.schemas.vocabulary import STATE_ID, STATES
+from hearth.schemas.vocabulary import EVERY_STATE_ID, STATE_ID, STATES
 from hearth.simulation.rules import Rules
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.agent import Agent
@@ -130,8 +130,11 @@ def _conditions(world: World, step: Step, rules: Rules) -> Iterator[Condition]:
 
 
 def _failing(conditions: list[Condition], world: World, step: Step, failure: Failure) -> int | None:
-    """Return the check of a failure: of several with its code, the one about the object named first."""
+    """Return the check of a failure: of several with its code, the one about the state found, or the first object."""
     found = [number for number, condition in enumerate(conditions) if condition.code is failure.code]
+    if failure.actual in EVERY_STATE_ID:
+        states = [n for n in found if str(conditions[n].formula).endswith(f", {failure.actual})")]
+        found = states or found
     node = next(iter(failure.objects), None)
     variable = next((name for name, ref in zip("os", step.objects, strict=False) if ref.node == node), "")
     about = (number for number in found if variable in free(conditions[number].formula))

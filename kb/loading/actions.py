@@ -14,6 +14,7 @@ from hearth.kb.loading.layers import Layers, check_ids, check_properties, parsed
 from hearth.kb.loading.source_files import Entry, Faults, strings, whole_number
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import Literal
+from hearth.schemas.vocabulary import EVERY_STATE
 
 _REQUIREMENT_KEYS = frozenset({"any", "all", "classes", "contains", "also", "never"})
 _ACTION_KEYS = frozenset({"id", "roles", "needs", "before", "effects", "say", "words", "aliases", "calls", "groups",
@@ -160,7 +161,8 @@ def _further_checks(name: str, rows: Iterable[Any], at: Entry, faults: Faults) -
 
 
 def _is_state_of_first(literal: Literal[Term]) -> bool:
-    return literal.name == "state" and not literal.negated and literal.terms[0].name == "o"
+    named = literal.name == "state" and not literal.negated and literal.terms[0].name == "o"
+    return named and literal.terms[-1].name in EVERY_STATE
 
 
 MOST_TICKS = 100

@@ -70,8 +70,6 @@ def check_effect(effect: Effect, bound: set[str], whose: str, derived: Derived, 
         check_formula(literal.atom, variables, whose, derived, at, faults)
     elif len(literal.terms) != 1 or literal.negated or not {literal.terms[0].name} <= variables:
         faults.at(at, f"`{effect}` is not an effect", "one thing is gone, and for ever: `gone(o)`")
-    if literal.name == "state" and len(literal.terms) == 2 and literal.terms[1].name not in EVERY_STATE:
-        faults.at(at, f"`{literal}`: nothing can be brought into that state", f"one of {', '.join(EVERY_STATE)}")
 
 
 MOST_SHOWN = 200
@@ -98,6 +96,10 @@ def check_formula(
         wanted = (len(derived[part.name][0].terms),) if part.name in derived else TERMS.get(part.name, ())
         if wanted and len(part.terms) not in wanted:
             faults.at(at, f"`{_short(part)}` has {len(part.terms)} terms, not {wanted[-1]}")
+    for part in _asked(formula):
+        if part.name == "state" and len(part.terms) == 2 and part.terms[1].name not in EVERY_STATE:
+            words = f"`{_short(part)}`: nothing can be brought into that state"
+            faults.at(at, words, f"one of {', '.join(EVERY_STATE)}")
     for limit in sorted({part.limit.function for part in _parts(formula) if isinstance(part, Count)} - {*LIMITS}):
         faults.at(at, f"in `{_short(formula)}`: `{limit}` is not a number of things", f"one of {', '.join(LIMITS)}")
     for unbound in sorted(free(formula) - variables):

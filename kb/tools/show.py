@@ -63,14 +63,17 @@ def about_action(knowledge: Knowledge, action: Action) -> dict[str, Any]:
         ],
         "effects": [str(effect) for effect in action.effects],
         "set_3": _set_3(action.later),
-        "repairs": [
-            {"on": repair.code.value, "when": repair.when, "repair": repair.say, "source": repair.source}
-            for check in action.preconditions
-            for repair in knowledge.repairs_for(check.code, action.name)[:1]
-        ],
+        "repairs": _repairs(knowledge, action.name),
         "served_by": [a.name for a in knowledge.associations if a.relation == "serves" and a.other == action.name],
         "source": action.source,
     }
+
+
+def _repairs(knowledge: Knowledge, name: str) -> list[dict[str, str]]:
+    """Return the first repair of each check that any action set makes of an action."""
+    codes = dict.fromkeys(check.code for check in knowledge.of_set(LATEST).actions[name].preconditions)
+    found = [each for code in codes for each in knowledge.repairs_for(code, name)[:1]]
+    return [{"on": each.code.value, "when": each.when, "repair": each.say, "source": each.source} for each in found]
 
 
 def _set_3(later: Consequence | None) -> list[dict[str, str]]:

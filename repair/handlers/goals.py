@@ -3,7 +3,7 @@
 from hearth.grounding.preconditions.usual_states import usual_states
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before
 from hearth.repair.handlers.posture import places_to_rest
-from hearth.repair.handlers.states import restoring
+from hearth.repair.handlers.states import operates, restoring
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step
@@ -27,7 +27,8 @@ def circumstances_lost(context: RepairContext) -> Edit | None:
             index = context.world.home.index[context.nodes[fact.subject]]
             steps = restoring(context, usual_states()[fact.name], index)
         if steps:
-            return before(context, "circumstances_lost", *steps)
+            usual = fact.name in usual_states() and operates(steps)
+            return before(context, "circumstances_lost", *steps)._replace(stays=usual)
     return None
 
 

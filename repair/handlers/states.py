@@ -20,7 +20,7 @@ def wrong_state(context: RepairContext) -> Edit | None:
     for row in usual_states().values():
         if row.violated is not None and _STATES[row.violated[1]] == state and row.restored and context.failure.objects:
             steps = restoring(context, row, context.index())
-            return before(context, f"not_{row.condition}", *steps) if steps else None
+            return before(context, f"not_{row.condition}", *steps)._replace(stays=operates(steps)) if steps else None
     known = context.knowledge.actions[context.step.action]
     makes = any(str(effect.literal).endswith(f", {state})") for effect in known.effects)
     return removed(context, "already_so") if makes or state not in EVERY_STATE_ID else None
@@ -40,6 +40,11 @@ def restoring(context: RepairContext, row: UsualState, index: int) -> tuple[Step
             steps = tuple(context.does(action, *(things[name] for name in names)) for action, names in way.steps)
             return steps[_left_out(context, steps, index) :]
     return ()
+
+
+def operates(steps: tuple[Step, ...]) -> bool:
+    """Return whether steps switch something on: then they all stay, so that it is switched off again."""
+    return any(step.action == "SwitchOn" for step in steps)
 
 
 def _left_out(context: RepairContext, steps: tuple[Step, ...], index: int) -> int:

@@ -59,6 +59,11 @@ def test_a_row_of_a_user_is_one_more(tmp_path, knowledge):
         ('set: 3\n  effects: ["gone(a, o)"]', "is not an effect"),
         ('set: 3\n  effects: ["state(o, PURPLE)"]', "nothing can be brought into that state"),
         ('effects: []\n  unless: [{IS_OFF: "state(o, ON)"}]', "sets 1 and 2 make no check IS_OFF"),
+        ('effects: []\n  besides: [{WRONG_STATE: "state(o, CUT)"}]', "not state(o, STATE)"),
+        ('effects: []\n  besides: [{WRONG_STATE: "not state(o, PURPLE)"}]', "PURPLE"),
+        ('set: 3\n  before: [{WRONG_STATE: "not state(o, PURPLE)"}]\n  effects: []', "PURPLE"),
+        ('set: 3\n  effects: ["state(o, PURPLE) -> state(o, CUT)"]', "PURPLE"),
+        ('set: 3\n  effects: []\n  besides: [{WRONG_STATE: "not state(o, CUT)"}]', "set 3 makes all its checks"),
         ('before: [{IS_OFF: "state(o, ON)"}]\n  unless: [{IS_OFF: "property(o, CLOTHES)"}]', "state(o, STATE)"),
     ],
 )
