@@ -15,11 +15,16 @@ from typing import Any
 
 from hearth.datasets.dataset import Dataset
 from hearth.datasets.export.pddl_domain import TO_DOOR, planning_domain
-from hearth.datasets.export.pddl_problems import Task, object_names, problem, tasks
+from hearth.datasets.export.pddl_problems import WANTED, Task, object_names, problem, tasks
 from hearth.datasets.export.program_batches import Wanted
+from hearth.kb.formula import Term
 from hearth.kb.knowledge import Knowledge
+from hearth.kb.knowledge_records import Action, Process
+from hearth.kb.tools.pddl import literals_of, states_in, waiting
+from hearth.schemas.literals import Literal
 from hearth.schemas.optional_libraries import library
 from hearth.schemas.program import ObjectRef, Program, Step
+from hearth.simulation.actions.registry import ACTIONS, EVERY
 from hearth.simulation.engine import run
 from hearth.simulation.rules import rules_of
 from hearth.storage.parallel import Seen, spread, unseen
@@ -114,23 +119,72 @@ def dispensable(knowledge: Knowledge) -> dict[str, tuple[str, ...]]:
     variants = [knowledge.actions[name] for name in sorted(knowledge.group("variant"))]
     plain = [action for action in knowledge.actions.values() if action.name not in knowledge.group("variant")]
     same = {v.name: tuple(a.name for a in plain if a.effects == v.effects) for v in variants}
-    return {**same, "TurnTo": ()}
+    alike = {a.name: (a.later.like,) for a in plain if a.executed and a.later and a.later.like}  # Crawl is a Walk
+    return {**same, **alike, "TurnTo": ()}
 
 
 def helpful(task: Task) -> tuple[str, ...]:
-    """Return the actions that a plan may need: those with an effect, and with objects in the problem."""
+    """Return the actions that a plan may need: with objects in the problem, and with an effect that something asks for.
+
+    Acts that only action set 3 executes move nothing that others cannot move; so they count for the states that they
+    make, and for where the character is.
+    """
     home = task.world.home
     there = sum(1 << home.index[node] for node in task.objects)
-    spare = dispensable(home.knowledge)
-    return tuple(
-        name
+    spare = {*dispensable(home.knowledge), *home.knowledge.group("unplanned"), *(EVERY.keys() - ACTIONS.keys())}
+    able = {
+        name: action
         for name, action in sorted(home.knowledge.actions.items())
         if action.executed
         and action.effects
         and name not in spare
-        and name not in home.knowledge.group("unplanned")
         and all(home.able(name, position) & there for position in range(action.arity))
-    )
+    }
+    waits = {name: waiting(home.knowledge)[name] for name in _awaited(task)}
+    wanted = {state for _, state, _ in task.states}
+    wanted |= {part.terms[1].name for each in waits.values() for part in literals_of(each) if part.name == "state"}
+    found: set[str] = set()
+    while more := {name for name, action in able.items() if name not in found and _makes_one(action, wanted)}:
+        found |= more
+        wanted |= {state for name in more for check in able[name].preconditions for state in states_in(check.formula)}
+    return (*(name for name in able if name in found), *waits)
+
+
+def _makes_one(action: Action, wanted: set[str]) -> bool:
+    """Return whether an action changes a state that something asks for, or a place or a hand."""
+    for effect in action.effects:
+        literal = effect.literal
+        if literal.name == "state" and literal.terms[1].name in wanted:
+            return True
+        moves = literal.name in WANTED and (action.name in ACTIONS or literal.terms[0].name == "a")
+        if moves or (literal.name == "CLOSE" and action.name in ACTIONS):
+            return True
+    return False
+
+
+def _awaited(task: Task) -> Iterator[str]:
+    """Yield the waits by which states of the goal come about, and those that these wait for."""
+    waits = waiting(task.world.home.knowledge)
+    wanted, found = {state for _, state, holds in task.states if holds}, dict[str, Process]()
+    while True:
+        more = {name: each for name, each in waits.items() if name not in found and wanted & _makes(each)}
+        if not more:
+            break
+        found |= more
+        wanted = {part.terms[1].name for each in more.values() for part in literals_of(each) if _is_state(part)}
+    classes = {task.world.home.classes[task.world.home.index[node]] for node in task.objects}
+    for name, process in found.items():
+        if {part.terms[1].name for part in literals_of(process) if part.name == "class"} <= classes:
+            yield name
+
+
+def _is_state(part: Literal[Term]) -> bool:
+    return part.name == "state" and not part.negated
+
+
+def _makes(process: Process) -> set[str]:
+    """Return the states that a process brings about."""
+    return {effect.literal.terms[-1].name for effect in process.effects if not effect.literal.negated} - {"ON", "OFF"}
 
 
 def solve(task: Task) -> Outcome:
@@ -154,7 +208,11 @@ def steps_of(task: Task, plan: Any) -> tuple[Step, ...]:
     home = task.world.home
     actions = {name.lower(): name for name in home.knowledge.actions} | {TO_DOOR.lower(): "Walk"}
     steps = []
+    waits = waiting(home.knowledge)
     for each in plan.actions:
+        if each.action.name.lower() in waits:
+            steps += [Step("Wait")] * waits[each.action.name.lower()].after
+            continue
         _, *given = (nodes[str(argument)] for argument in each.actual_parameters)
         refs = tuple(ObjectRef(home.classes[home.index[node]], 1, node) for node in given)
         steps.append(Step(actions[each.action.name.lower()], refs))

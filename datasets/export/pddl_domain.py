@@ -17,9 +17,10 @@ from itertools import count
 from hearth.kb.formula import Effect, Term
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.knowledge_records import Action
-from hearth.kb.tools.pddl import Names, Writer, dashed, option_predicate, options, unary_predicates
+from hearth.kb.tools.pddl import Names, Writer, dashed, option_predicate, options, unary_predicates, waiting
 from hearth.schemas.literals import Literal
 from hearth.schemas.vocabulary import PROPERTIES, RELATIONS
+from hearth.simulation.actions.registry import ACTIONS, EVERY
 
 TO_DOOR = "WalkToDoor"
 """A Walk in our programs."""
@@ -30,15 +31,20 @@ def planning_domain(knowledge: Knowledge, actions: Iterable[str] = (), loose: bo
 
     Args:
         knowledge: of which the executed actions are written.
-        actions: only these; all if none.
+        actions: only these, and these waits (`kb.tools.pddl.waiting`); all if none.
         loose: whether the character is also close to things next to or on a CLOSE one (semantics: the loose rule).
             Without it there are fewer ways to satisfy a precondition and planners are faster; their plans
             are plans with it, too.
     """
+    actions = tuple(actions)
     executed = {name for name, action in knowledge.actions.items() if action.executed} - knowledge.group("unplanned")
+    executed -= EVERY.keys() - ACTIONS.keys()  # moves by metres, of which no literal says where they lead
     wanted = executed & {*actions} or executed
     writer = _Writer(knowledge, loose)
     written = [line for name in sorted(wanted) for line in writer.action(knowledge.actions[name])]
+    waits = waiting(knowledge)
+    waits = {name: waits[name] for name in actions if name in waits} if actions else waits
+    written += [line for name, process in waits.items() for line in writer.wait(name, process)]
     written += writer.to_door(knowledge.actions["Walk"]) if "Walk" in wanted else []
     lines = [
         "(define (domain hearth)",

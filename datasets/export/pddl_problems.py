@@ -11,7 +11,7 @@ too. A thing that was left out could only take up a hand, hide something, stop a
 with such an effect is kept.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -100,22 +100,48 @@ def tasks(dataset: Dataset, wanted: Wanted) -> Iterator[Task]:
             yield _task(row["execution_id"], world, states, edges, row["program_id"], RULES[row["rules"]])
 
 
-def task_of(execution: Execution, name: str = "") -> Task | None:
-    """Return the planning task of an execution; None if it has no goal."""
-    start = execution.worlds[0]
-    states, edges = _goal(execution.final.changes(start), start.home.knowledge)
-    return _task(name, start, states, edges, "", execution.rules) if states or edges else None
+def task_of(execution: Execution, name: str = "", in_time: bool = False) -> Task | None:
+    """Return the planning task of an execution; None if it has no goal.
+
+    Args:
+        execution: whose changes are the goal.
+        name: of the task.
+        in_time: whether states that come by themselves are goals, too: food that is cooked. The problem then has all
+            things of the program, devices among them.
+    """
+    start, program = execution.worlds[0], execution.program
+    states, edges = _goal(execution.final.changes(start), start.home.knowledge, in_time)
+    used = {ref.node for ref in program.objects() if ref.node is not None} if in_time else set()
+    return _task(name, start, states, edges, "", execution.rules, used) if states or edges else None
 
 
-def _task(name: str, world: World, states: States, edges: Edges, program_id: str, rules: Rules) -> Task:
-    named = {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
+def _task(
+    name: str,
+    world: World,
+    states: States,
+    edges: Edges,
+    program_id: str,
+    rules: Rules,
+    used: Set[int] = frozenset(),
+) -> Task:
+    named = {*used} | {node for node, _, _ in states} | {end for edge, _ in edges for end in (edge.source, edge.target)}
     return Task(name, world, tuple(_objects(world, named)), states, edges, program_id, rules)
 
 
-def _goal(whole: Change, knowledge: Knowledge) -> tuple[States, Edges]:
+def _goal(whole: Change, knowledge: Knowledge, in_time: bool = False) -> tuple[States, Edges]:
     """Return the goal of a net change."""
+    coming = {
+        effect.literal.terms[-1].name
+        for process in (knowledge.processes.values() if in_time else ())
+        for effect in process.effects
+        if not effect.literal.negated
+    }
     states = [(*state, True) for state in whole.set_states] + [(*state, False) for state in whole.cleared_states]
-    states = [each for each in states if each[1] in STATE_ID or (each[2] and knowledge.achieving(each[1]))]
+    states = [
+        each
+        for each in states
+        if each[1] in STATE_ID or (each[2] and (knowledge.achieving(each[1]) or each[1] in coming))
+    ]
     edges = [(edge, True) for edge in whole.added] + [(edge, False) for edge in whole.removed]
     return tuple(sorted(states)), tuple(sorted((edge, holds) for edge, holds in edges if edge.relation in WANTED))
 

@@ -5,7 +5,8 @@ found thing (`room(o)`) is stated for every such thing. Where a Grab would remem
 domain remembers all of them, its only difference from the engine. A rule that a derived predicate asks for (`option`)
 is a predicate without arguments, such as `(option-made-bed)`: problems in which the rule is on state it.
 
-Of action set 3 acts are written, and processes are not: nothing gets hot by itself in a plan.
+Of action set 3 each process is an action, too: to wait until it is done (`waiting`). In a plan it stands for as many
+`Wait` as the process takes ticks. That other processes go on meanwhile is left out, so a plan has to be tried.
 """
 
 from abc import ABC, abstractmethod
@@ -13,11 +14,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
-from hearth.kb.action_sets import states_of_set
+from hearth.kb.action_sets import LATEST, states_of_set
 from hearth.kb.derived_uses import derived_used
-from hearth.kb.formula import GONE, OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term
+from hearth.kb.formula import GONE, OPTION, TRUE, And, Count, Effect, Formula, Not, Or, Some, Term, free
 from hearth.kb.knowledge import Knowledge
-from hearth.kb.knowledge_records import Action, Requirement
+from hearth.kb.knowledge_records import Action, Condition, Process, Requirement
+from hearth.schemas.failures import Code
 from hearth.schemas.literals import HANDS, Literal
 from hearth.schemas.vocabulary import RELATIONS
 
@@ -55,6 +57,7 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
         ("property", name) for name in properties
     }
     formulas = [body for _, body in derived_used(knowledge).values()]
+    formulas += [each.condition for each in knowledge.processes.values()] if knowledge.action_set == LATEST else []
     for action in knowledge.actions.values():
         if action.executed:
             formulas += [check.formula for check in action.preconditions]
@@ -66,6 +69,42 @@ def unary_predicates(knowledge: Knowledge, properties: Iterable[str] = ()) -> li
     words.update(pair for formula in formulas for pair in _named(formula))
     limits = {limit_predicate(kind, limit) for kind in LIMITS for limit in _limits(knowledge, kind)}
     return sorted({"is-room", *limits, *(predicate(*pair) for pair in words)})
+
+
+def waiting(knowledge: Knowledge) -> dict[str, Process]:
+    """Return the processes by the actions that wait for them, such as `await-kettle-boils`; none of sets 1 and 2."""
+    processes = knowledge.processes.values() if knowledge.action_set == LATEST else ()
+    return {f"await-{dashed(each.name)}": each for each in processes}
+
+
+def literals_of(process: Process) -> tuple[Literal[Term], ...]:
+    """Return what has to hold while a process goes on."""
+    parts = process.condition.parts if isinstance(process.condition, And) else (process.condition,)
+    return tuple(part for part in parts if isinstance(part, Literal))
+
+
+def states_in(formula: Formula) -> Iterator[str]:
+    """Yield the states that a formula asks for, or asks to be absent."""
+    if isinstance(formula, Literal):
+        if formula.name == "state":
+            yield formula.terms[1].name
+        return
+    for part in formula.parts if isinstance(formula, And | Or) else (formula.part,):
+        yield from states_in(part)
+
+
+def _wait(name: str, process: Process) -> Action:
+    """Return waiting for a process as an action on the thing and its device."""
+    names = {"x": "o", "d": "s"}
+
+    def renamed(literal: Literal[Term]) -> Literal[Term]:
+        return literal._replace(terms=tuple(replace(t, name=names.get(t.name, t.name)) for t in literal.terms))
+
+    checks = tuple(Condition(renamed(part), Code.WRONG_STATE) for part in literals_of(process))
+    effects = tuple(replace(each, literal=renamed(each.literal)) for each in process.effects)
+    roles = ("thing", "device")[: len(free(process.condition))]
+    anything = Requirement(anything=True)
+    return Action(name, -1, True, roles, tuple(anything for _ in roles), (), checks, effects, name)
 
 
 def option_predicate(name: str) -> str:
@@ -157,6 +196,10 @@ class Writer(ABC):
         yield "    :effect (and"
         yield from (f"      {self._effect(change, names)}" for each in action.effects for change in self.changes(each))
         yield "    ))"
+
+    def wait(self, name: str, process: Process) -> Iterator[str]:
+        """Yield the lines of the action that waits for a process."""
+        return self.action(_wait(name, process))
 
     def formula(self, formula: Formula, names: Names) -> str:
         """Return a formula whose free variables have these names."""
@@ -301,6 +344,7 @@ def domain(knowledge: Knowledge, name: str = "hearth") -> str:
         _PLACES,
         *(f"  (:derived {head}\n    {body})" for head, body in axioms.items()),
         *(line for action in knowledge.actions.values() if action.executed for line in writer.action(action)),
+        *(line for name, process in waiting(knowledge).items() for line in writer.wait(name, process)),
         ")",
     ]
     return "\n".join(lines) + "\n"
