@@ -1,4 +1,4 @@
-"""What people take for granted of things in action set 3: dishes are clean, glasses full, coffee hot, bread whole.
+"""States that people take for granted of things in action set 3: clean dishes, full glasses, hot coffee, whole bread.
 
 The rows of `usual_states.yaml` are soft conditions of programs. Perturbations violate them, and repairs restore them.
 """
@@ -28,7 +28,7 @@ class Restoring:
     """A way to bring a condition about.
 
     Attributes:
-        steps: each an action and its objects: `x` for the thing, `d` and `e` for those that it is done with.
+        steps: each an action and its objects: `x` for the thing, `d` and `e` for the things that it is done with.
         classes: of d, and of e, which is close to d; none where no step names it.
         belongs: whether d has to be something that belongs in x.
     """
@@ -95,7 +95,7 @@ def _restoring(way: Mapping[str, Any]) -> Restoring:
 
 
 def usual_conditions(program: Program, knowledge: Knowledge) -> Iterator[Condition]:
-    """Yield what a program takes for granted of its things at its steps; nothing in sets 1 and 2."""
+    """Yield the states that a program takes for granted of its things at its steps; none in sets 1 and 2."""
     if knowledge.action_set != LATEST:
         return
     for row in usual_states().values():

@@ -14,7 +14,7 @@ _STATES = STATE_OF | STATE_OF_SET_3
 def wrong_state(context: RepairContext) -> Edit | None:
     """Bring the thing out of its state where the knowledge has a way; leave the step out where it is done already.
 
-    Nothing helps where the state stops the act and is not what it makes: nobody drinks from what is broken.
+    Nothing helps where the state stops the act and the act does not make it: nobody drinks from a broken glass.
     """
     state = context.failure.actual
     for row in usual_states().values():
@@ -56,7 +56,7 @@ def _left_out(context: RepairContext, steps: tuple[Step, ...], index: int) -> in
 
 
 def _things(context: RepairContext, way: Restoring, index: int) -> dict[str, ObjectRef] | None:
-    """Return the thing and what the steps are done with, by the names in the steps; None where the home lacks one."""
+    """Return the thing and its helpers by their names in the steps; None where the home lacks a helper."""
     found = {"x": index}
     for name, classes in way.classes.items():
         near = found.get("d")

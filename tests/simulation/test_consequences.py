@@ -327,42 +327,6 @@ def test_who_eats_has_no_bread_left_and_nothing_that_is_gone_comes_back():
         )
 
 
-def test_bread_has_four_portions_and_what_lies_on_a_plate_one():
-    """A loaf is cut, eaten from and put back: only its last portion leaves nothing."""
-    nodes = [
-        node(1, "kitchen"), node(2, "character", properties=("PERSON",)), node(4, "plate", properties=("SURFACES",)),
-        *(node(k, "food_bread", properties=("GRABBABLE", "EATABLE", "CUTTABLE")) for k in (3, 5)),
-    ]  # fmt: skip
-    edges = [*(Edge(n.id, "INSIDE", 1) for n in nodes[1:]), Edge(5, "ON", 4), Edge(2, "HOLDS_RH", 3)]
-    edges += [edge for k in (3, 4) for edge in (Edge(2, "CLOSE", k), Edge(k, "CLOSE", 2))]
-    world = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "", KNOWN))
-    ids = {"bread": 3, "plate": 4, "served": 5}
-    for state in ("BEGUN", "HALF_LEFT", "LAST_LEFT"):
-        world = ran(world, ids, "Eat bread").final
-        assert {name for thing, name in states(world) if thing == 3} == {state} and world.holding() == {0: (3,)}
-    last = ran(world, ids, "Eat bread").final
-    assert last.has_state(3, "GONE") and last.holding() == {0: ()}
-    assert ran(world, ids, "Eat plate").final.has_state(5, "GONE")
-
-
-@pytest.mark.parametrize("name", ["milk", "beer", "juice", "water"])
-def test_a_drink_is_drunk_in_portions_and_its_carton_stays(name):
-    """Milk and beer stay as an empty carton, juice is gone with its last portion, water with its first."""
-    properties = KNOWN.object_class(name).properties
-    nodes = [node(1, "kitchen"), node(2, "character", properties=("PERSON",)), node(3, name, properties=properties)]
-    edges = [Edge(2, "INSIDE", 1), Edge(3, "INSIDE", 1), Edge(2, "HOLDS_RH", 3), Edge(2, "CLOSE", 3)]
-    world = World.start(Home.from_graph(EnvironmentGraph(tuple(nodes), tuple(edges)), "", KNOWN))
-    for state in ("BEGUN", "HALF_LEFT", "LAST_LEFT") if name != "water" else ():
-        world = ran(world, {name: 3}, f"Drink {name}").final
-        assert {each for thing, each in states(world) if thing == 3} == {state}
-    last = ran(world, {name: 3}, f"Drink {name}").final
-    stays = name in ("milk", "beer")
-    left = {each for thing, each in states(last) if thing == 3} - {"LAST_LEFT"}
-    assert left == {"EMPTY" if stays else "GONE"}
-    again = act(last, bound_step("Drink", [world.home.node(2)]), CONSEQUENCES)
-    assert isinstance(again, Failure) and again.code is (Code.WRONG_STATE if stays else Code.NOT_HOLDING), again
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_nothing_appears_or_vanishes_but_what_is_eaten_or_drunk(seed):
     rng = random.Random(seed)
