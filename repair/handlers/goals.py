@@ -3,7 +3,7 @@
 from hearth.grounding.preconditions.usual_states import usual_states
 from hearth.repair.handlers.common import Edit, RepairContext, Splice, before
 from hearth.repair.handlers.posture import places_to_rest
-from hearth.repair.handlers.states import operates, restoring
+from hearth.repair.handlers.restored_states import operates, restoring
 from hearth.schemas.failures import Code
 from hearth.schemas.literals import HOLDS, Key, Literal
 from hearth.schemas.program import ObjectRef, Step

@@ -1,6 +1,6 @@
 """Handlers by failure code. To add one: a function, a row here, a test, its words in kb/data/repairs.yaml."""
 
-from hearth.repair.handlers import agents, appliances, food, goals, hands, locomotion, posture, senses, states
+from hearth.repair.handlers import agents, appliances, food, goals, hands, locomotion, posture, restored_states, senses
 from hearth.repair.handlers.common import Handler, leaving_out
 from hearth.schemas.failures import Code
 
@@ -30,7 +30,7 @@ HANDLERS: dict[Code, Handler] = {
     Code.NO_ORIGIN: hands.no_origin,
     Code.OCCUPIED: posture.occupied,
     Code.SITTING: posture.sitting,
-    Code.WRONG_STATE: states.wrong_state,
+    Code.WRONG_STATE: restored_states.wrong_state,
 }
 """Handlers by failure code: those of table A.4, and those that it leaves out."""
 
