@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hearth.homes.from_graph.layout_from_boxes import has_geometry
 from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
-from hearth.interop.scene_graphs import completion
+from hearth.interop.scene_graphs import completion, omnigibson, urdf_scenes
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
 from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
@@ -17,8 +17,8 @@ from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.geometry_faults import geometry_faults
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
-from hearth.interop.scene_graphs.omnigibson import joined
-from hearth.interop.scene_graphs.room_extents import with_boxes
+from hearth.interop.scene_graphs.room_extents import HEIGHT, with_boxes
+from hearth.interop.scene_graphs.room_kinds import classes_of
 from hearth.interop.scene_graphs.shape import Shape, usual
 from hearth.interop.scene_graphs.single_holders import with_single_holders
 from hearth.interop.scene_graphs.units_of_length import unit_word
@@ -49,7 +49,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(joined(data), shape, MOST_ENTRIES)
+    found = entities_of(urdf_scenes.joined(omnigibson.joined(data)), shape, MOST_ENTRIES)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
@@ -103,7 +103,7 @@ class _Reading:
 
     def read(self, entities: Sequence[Entity], ties: Ties) -> ReadGraph:
         """Return the home of some entries and their relations."""
-        classes = {id(entity): class_of(entity.label, self.shape, self.knowledge) for entity in entities}
+        classes = classes_of(entities, ties, self.shape, self.knowledge)
         kept = [entity for entity in entities if classes[id(entity)].name]
         self._note_classes(entities, classes)
         self._name_shared_ids(entities)
@@ -113,8 +113,7 @@ class _Reading:
         if not kept:
             raise HearthError(self.left_out[:20])
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
-        usual_sizes = [None if shaped is None else shaped.size for shaped in shapes]
-        units = units_of(kept, usual_sizes, self.shape, self.unit_word)
+        units = units_of(kept, shapes, self.shape, self.unit_word)
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
         entries, raised = raised_from_feet(entries, self.knowledge)
         self.note("places at the foot of things, as all stand on one level", raised)
@@ -246,19 +245,29 @@ class _Reading:
         return relation or completion.usual_relation(entry.class_name, other.class_name, self.knowledge)
 
     def _graph(self, entries: Sequence[Entry], numbers: Mapping[int, int], edges: Sequence[Edge]) -> EnvironmentGraph:
-        nodes = [self._node(entry, numbers[id(entry)]) for entry in entries]
+        rooms = {numbers[id(entry)] for entry in entries if self.knowledge.is_room(entry.class_name)}
+        held = {edge.source for edge in edges if edge.relation in ("ON", "INSIDE") and edge.target not in rooms}
+        flat = [entry for entry in entries if entry.is_flat and entry.place is not None]
+        self.note("places without a height, on the floor or on the holder of the thing", [e.class_name for e in flat])
+        nodes = [self._node(entry, numbers[id(entry)], held) for entry in entries]
         rows = [{"from_id": one, "relation_type": relation, "to_id": other} for one, relation, other in edges]
         return from_release(filled({"nodes": nodes, "edges": rows}, self.knowledge).data, self.file)
 
-    def _node(self, entry: Entry, number: int) -> dict[str, Any]:
+    def _node(self, entry: Entry, number: int, held: Set[int]) -> dict[str, Any]:
         node: dict[str, Any] = {"id": number, "class_name": entry.class_name}
         states = completion.states_with(entry.states, entry.class_name, self.knowledge)
         if states:
             node["states"] = states
-        shaped = None if self.knowledge.is_room(entry.class_name) else form(entry.class_name, self.knowledge)
+        is_room = self.knowledge.is_room(entry.class_name)
+        shaped = None if is_room else form(entry.class_name, self.knowledge)
         size = entry.size if entry.size is not None and min(entry.size) > 0 else shaped and shaped.size
-        if entry.place is not None and size and self._is_of_a_home(entry, size):
-            node["bounding_box"] = {"center": list(entry.place), "size": list(size)}
+        place = entry.place
+        if is_room and place is not None and entry.size is not None and _is_outline(entry.size):
+            place, size = (place[0], place[1] + HEIGHT / 2, place[2]), (entry.size[0], HEIGHT, entry.size[2])
+        elif entry.is_flat and place is not None and size:
+            place = None if number in held else (place[0], size[1] / 2, place[2])
+        if place is not None and size and self._is_of_a_home(entry, size):
+            node["bounding_box"] = {"center": list(place), "size": list(size)}
             node["yaw"] = entry.yaw
         return node
 
@@ -331,14 +340,18 @@ class _Reading:
         placed = replace(graph, edges=(*graph.edges, *new))
         return placed if self.keeps_boxes else self._singly_held(placed)
 
-    def _room_of(self, box: Box | None, rooms: Sequence[Any]) -> Any:
-        """Return the room whose box holds a box's centre; else the first room."""
-        for room in rooms if box is not None else ():
-            if room.box is not None and box is not None and all(
-                abs(box.center[axis] - room.box.center[axis]) <= room.box.size[axis] / 2 for axis in (0, 2)
-            ):  # fmt: skip
-                return room
-        return rooms[0]
+    def _room_of(self, box: Box | None, rooms: Sequence[Node]) -> Node:
+        """Return the room whose box is nearest to a box's center; else the first room."""
+        known = [(room, room.box) for room in rooms if room.box is not None]
+        if box is None or not known:
+            return rooms[0]
+        near = box
+
+        def outside(held: Box) -> float:
+            gaps = (abs(near.center[axis] - held.center[axis]) - held.size[axis] / 2 for axis in (0, 2))
+            return max(0.0, *gaps)
+
+        return min(known, key=lambda each: outside(each[1]))[0]
 
     def _housed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         """Return the graph in which everything that is on or in something is INSIDE the room of that as well."""
@@ -363,6 +376,11 @@ class _Reading:
         for what, examples in notes:
             self.note(what, examples)
         return found
+
+
+def _is_outline(size: Vector) -> bool:
+    """Return whether a room has an outline and no height."""
+    return size[1] == 0 and min(size[0], size[2]) > 0
 
 
 def _next(graph: EnvironmentGraph) -> int:

@@ -24,6 +24,9 @@ LOOKS = (
 MATERIALS = "wooden plastic metallic woolen ceramic porcelain leather cotton steel"
 COLORS = "red blue green yellow white black brown gray grey orange purple pink golden silver dark bright"
 
+NOUNS_OF_MATERIALS = "wood metal glass stone marble fabric iron bamboo wicker rattan"
+"""Materials that are things of their own in sentences; before the noun of a label they are materials."""
+
 _ADJECTIVES = "|".join(
     word for words in (SIZES, AGES, PLACES, STATES, LOOKS, MATERIALS, COLORS) for word in words.split()
 )
@@ -43,3 +46,19 @@ def without_adjective(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         adjective, noun = found[1], found[2]
         if not is_english(adjective + noun) and not known.object_class(f"{adjective} {noun}"):
             yield text[: found.start()] + text[found.end() :], found[0].strip(" ,")
+
+
+_LABEL_WORD = re.compile(rf"(?:{_ADJECTIVES}|{_ROOMS}|{'|'.join(NOUNS_OF_MATERIALS.split())}) (?=([a-z-]+))")
+
+
+def noun_of(label: str, known: Knowledge) -> str:
+    """Return a label such as `small wooden chair` without its adjectives; "" where it has none.
+
+    As in sentences, an adjective that makes another noun of the next one stays.
+    """
+    text = left = label.lower()
+    while (found := _LABEL_WORD.match(text)) and not is_english(found[0].strip() + found[1]):
+        text = text[found.end() :]
+        if known.object_class(text) is not None:
+            break
+    return text if text != left else ""
