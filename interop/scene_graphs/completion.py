@@ -224,10 +224,9 @@ def with_doors(graph: EnvironmentGraph, first: int) -> tuple[EnvironmentGraph, i
     return replace(graph, nodes=(*graph.nodes, *doors), edges=(*graph.edges, *edges)), len(doors)
 
 
-def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> list[str]:
-    """Return the things of a graph with boxes that nobody can walk to, as `mug (7)`."""
-    names = {str(node.id): f"{node.class_name} ({node.id})" for node in graph.nodes}
-    return [names[fault.found] for fault in CHECKS["on foot"](View(graph, knowledge))]
+def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> set[int]:
+    """Return the things of a graph with boxes that nobody can walk to."""
+    return {int(fault.found) for fault in CHECKS["on foot"](View(graph, knowledge))}
 
 
 def without_boxes(graph: EnvironmentGraph) -> EnvironmentGraph:

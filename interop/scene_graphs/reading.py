@@ -17,6 +17,7 @@ from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.geometry_faults import geometry_faults
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.room_doors import with_doors
 from hearth.interop.scene_graphs.room_extents import HEIGHT, with_boxes
 from hearth.interop.scene_graphs.room_kinds import classes_of
 from hearth.interop.scene_graphs.shape import Shape, usual
@@ -211,13 +212,20 @@ class _Reading:
         above = holders(ties.ties, lambda entity: id(entity) in by_entity)
         edges: list[Edge] = []
         between: list[str] = []
+        second: list[str] = []
         for entry in entries:
             me = numbers[id(entry)]
+            in_room = False
             for relation, entity in above.get(id(entry.entity), []):
                 other = by_entity[id(entity)]
                 if self.knowledge.is_room(entry.class_name):
                     between.append(f"{entry.class_name} and {other.class_name}")
                     continue
+                if self.knowledge.is_room(other.class_name):
+                    if in_room:
+                        second.append(f"{entry.class_name} in {other.class_name}")
+                        continue
+                    in_room = True
                 edges.append(Edge(me, self._held(entry, relation, other), numbers[id(other)]))
         for entity, text in ties.rooms:
             if id(entity) in by_entity and text in rooms:
@@ -228,6 +236,7 @@ class _Reading:
                 edges.append(Edge(next(pair), tie.relation, next(pair)))
         self.note("relations of the file", [edge.relation for edge in edges])
         self.note("rooms in rooms or next to them, left out", between)
+        self.note("second rooms of a thing, left out", second)
         self.note("relations without a counterpart, left out", [word for _, word in ties.unknown_words])
         for path, text in ties.dangling:
             self._leave(Code.BAD_GRAPH, f"a relation names `{text}`, which is nothing in the file", path)
@@ -371,7 +380,9 @@ class _Reading:
     def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         """Return the graph with boxes: the file's, if a person can walk to everything; else those of a layout."""
         if self.keeps_boxes and has_geometry(graph):
-            return graph
+            joined, doors = with_doors(graph, self.knowledge)
+            self.note("doors that the file leaves out", doors)
+            return joined
         found, notes = with_boxes(graph, self.floors, self.file, self.knowledge)
         for what, examples in notes:
             self.note(what, examples)

@@ -1,4 +1,4 @@
-"""Scenes of iGibson, written as URDF in JSON: a link says what a thing is, a joint where it is; both are joined here."""
+"""Scenes of iGibson, written as URDF in JSON: links say what things are, joints where; both are joined here."""
 
 from __future__ import annotations
 
