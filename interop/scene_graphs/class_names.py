@@ -30,6 +30,7 @@ def class_of(label: str, shape: Shape, knowledge: Knowledge) -> ClassOf:
     The shape's table comes first, then the names of the knowledge; then both without a number at the label's end; then
     both without adjectives and rooms before the noun: a `wooden chair` is a chair, a `kitchen sink` is a sink.
     """
+    label = _last_part(label)
     bare = _without_number(label)
     for text, how in ((label, ""), (bare, "number left out")):
         found = _named(text, how, shape, knowledge)
@@ -63,6 +64,11 @@ def is_number_only(label: str) -> bool:
 
 _NUMBER = re.compile(r"(?:[|#:/].*|[\s_.-]*\d+(?:_\d+)*|[_-][0-9a-f]{6,})$", re.IGNORECASE)
 """Text behind a label: `Fridge|+01.2|-0.1`, `chair_12`, `Cup_5f3a9c21`."""
+
+
+def _last_part(label: str) -> str:
+    """Return the last part of a path such as `objects/fridge.glb`, without the ending of a file."""
+    return label.rstrip("/").rpartition("/")[2].partition(".")[0] if "/" in label else label
 
 
 def _without_number(label: str) -> str:

@@ -162,7 +162,7 @@ class _Walk:
 
     def _entity(self, each: dict[str, Any], path: str, group: str, owner: Entity | None, key: str) -> Entity | None:
         own = dict(_fields(_with_best(each, self.shape.best)))
-        label = self._label(own) or key
+        label = self._label(own) or self.shape.namesakes.get(group, "") or key
         if not label:
             return None
         names = _texts(own, self.shape.fields["name"])

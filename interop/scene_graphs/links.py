@@ -120,6 +120,9 @@ class _Reader:
                 self._held(entity, relation, text)
         for text in wanted(entity, names["room"]):
             self._room(entity, text)
+        ends = [self.by_key.get(text) for text in wanted(entity, names["between"])]
+        if len(ends) == 2:
+            self.ties += [Tie(entity, "BETWEEN", end) for end in ends if end is not None and end is not entity]
         for text in wanted(entity, names["children"]):
             child = None if self._is_ambiguous(entity.path, text) else self.by_key.get(text)
             if child is not None:

@@ -73,15 +73,16 @@ def size_of(entity: Entity, shape: Shape, up: str = "z") -> Size | None:
         for value in values_of(entity, [name]):
             extents = vectors.vector(value) or _by_words(value, up)
             if extents is not None and min(extents) >= 0:
-                turns = not any(key.startswith(WORLD_ALIGNED) for key in entity.fields if key.endswith(name))
+                turns = _turns(entity, name)
                 return Size(extents, turns) if axes is None else Size(vectors.along_axes(extents, axes))
     extents = _by_words(entity.fields, up)
     return None if extents is None or min(extents) < 0 else Size(extents, turns=True)
 
 
-def has_worded_size(entity: Entity, shape: Shape) -> bool:
-    """Return whether words name the height of an entry, so that its size says nothing about the axes."""
-    return size_of(entity, shape, "y") != size_of(entity, shape, "z")
+def _turns(entity: Entity, name: str) -> bool:
+    """Return whether the size of a name is along the thing's own axes; that of a box is, if the box has a rotation."""
+    keys = [key for key in entity.fields if key.endswith(name)]
+    return any("worldrcenter" in key for key in entity.fields) or not any(key.startswith(WORLD_ALIGNED) for key in keys)
 
 
 def _by_words(value: Any, up: str) -> Vector | None:
@@ -94,8 +95,9 @@ def _by_words(value: Any, up: str) -> Vector | None:
         for side, names in _EXTENTS.items()
     }
     width, depth, height = found["width"], found["depth"], found["height"]
-    if width is None or depth is None or height is None:
+    if width is None or depth is None:
         return None
+    height = 0.0 if height is None else height  # an outline
     if "length" in low and "depth" not in low:
         width, depth = depth, width
     return vectors.vector([width, height, depth] if up == "y" else [width, depth, height])

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from hearth.homes.from_graph.layout_from_boxes import has_geometry
+from hearth.homes.geometry import bottom
 from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
-from hearth.interop.scene_graphs import completion, omnigibson, urdf_scenes
+from hearth.interop.scene_graphs import completion, hydra, omnigibson, urdf_scenes
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
 from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
@@ -17,6 +18,7 @@ from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.geometry_faults import geometry_faults
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
+from hearth.interop.scene_graphs.map_adjustments import straightened, with_middles
 from hearth.interop.scene_graphs.room_doors import with_doors
 from hearth.interop.scene_graphs.room_extents import HEIGHT, with_boxes
 from hearth.interop.scene_graphs.room_kinds import classes_of
@@ -31,6 +33,12 @@ from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
 from hearth.schemas.vocabulary import FIRST_ADDED_ID, ROOM_CATEGORY
+
+LOWEST_ROOM = 1.0
+"""Metres: a room that is lower is its floor."""
+
+RAISED = 0.3
+"""Metres above the floor from which a thing stands on something else."""
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
@@ -50,7 +58,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
         >>> [node.class_name for node in home.graph.nodes]
         ['kitchen', 'fridge', 'milk', 'character']
     """
-    found = entities_of(urdf_scenes.joined(omnigibson.joined(data)), shape, MOST_ENTRIES)
+    found = entities_of(hydra.labelled(urdf_scenes.joined(omnigibson.joined(data))), shape, MOST_ENTRIES)
     if not found.entities:
         raise HearthError.of(Code.BAD_GRAPH, "no list of things with a class, label or name is in it", file=file,
                              suggestion="name the fields by `--mapping FILE`")  # fmt: skip
@@ -116,6 +124,12 @@ class _Reading:
         shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
         units = units_of(kept, shapes, self.shape, self.unit_word)
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
+        entries, angle = straightened(entries)
+        if angle:
+            placed = [entry.class_name for entry in entries if entry.place is not None]
+            self.note(f"places turned by {angle:g} degrees, as most things stand so", placed)
+        entries, cornered = with_middles(entries, units, self.knowledge)
+        self.note("rooms whose places are their corners, as more things are in them so", cornered)
         entries, raised = raised_from_feet(entries, self.knowledge)
         self.note("places at the foot of things, as all stand on one level", raised)
         self.floors = self._floors(entities, units)
@@ -251,7 +265,8 @@ class _Reading:
         """Return the relation to a holder; where the file does not say which, that which is usual."""
         if self.knowledge.is_room(other.class_name):
             return "INSIDE"
-        return relation or completion.usual_relation(entry.class_name, other.class_name, self.knowledge)
+        return relation or _by_height(entry, other) or completion.usual_relation(
+            entry.class_name, other.class_name, self.knowledge)  # fmt: skip
 
     def _graph(self, entries: Sequence[Entry], numbers: Mapping[int, int], edges: Sequence[Edge]) -> EnvironmentGraph:
         rooms = {numbers[id(entry)] for entry in entries if self.knowledge.is_room(entry.class_name)}
@@ -272,7 +287,8 @@ class _Reading:
         size = entry.size if entry.size is not None and min(entry.size) > 0 else shaped and shaped.size
         place = entry.place
         if is_room and place is not None and entry.size is not None and _is_outline(entry.size):
-            place, size = (place[0], place[1] + HEIGHT / 2, place[2]), (entry.size[0], HEIGHT, entry.size[2])
+            low = place[1] + entry.size[1] / 2
+            place, size = (place[0], low + HEIGHT / 2, place[2]), (entry.size[0], HEIGHT, entry.size[2])
         elif entry.is_flat and place is not None and size:
             place = None if number in held else (place[0], size[1] / 2, place[2])
         if place is not None and size and self._is_of_a_home(entry, size):
@@ -328,17 +344,21 @@ class _Reading:
         held = {edge.source for edge in graph.edges if edge.relation in ("ON", "INSIDE") and edge.target not in rooms}
         housed = {edge.source for edge in graph.edges if edge.relation == "INSIDE"}
         things = [node for node in graph.nodes if node.id not in rooms]
+        floor = min((bottom(node.box) for node in things if node.box is not None), default=0.0)
+        between = {e.source: e.target for e in graph.edges if e.relation == "BETWEEN" and e.target in rooms}
         by: dict[str, list[str]] = {"box": [], "usual": [], "room": []}
         new: list[Edge] = []
         for node in things:
             shaped = form(node.class_name, self.knowledge)
-            small = shaped is not None and shaped.mount == "item"
+            small = shaped is not None and (shaped.mount in ("item", "sunk") or self._is_raised(node, floor))
             if node.id in held or (node.id in housed and not (small and node.box)):
                 continue
             place, how = completion.held_by_box(node, things, self.knowledge) if small else None, "box"
             if place is None and node.id not in housed and node.box is None:
                 place, how = completion.usual_place(node, graph.nodes, self.knowledge), "usual"
-            if place is None and node.id not in housed:
+            if place is None and node.id in between:
+                place, how = ("INSIDE", rooms[between[node.id]]), "room"
+            elif place is None and node.id not in housed:
                 place, how = ("INSIDE", self._room_of(node.box, list(rooms.values()))), "room"
             if place is not None:
                 new.append(Edge(node.id, place[0], place[1].id))
@@ -348,6 +368,12 @@ class _Reading:
         self.note("things in a room that the file does not name", by["room"])
         placed = replace(graph, edges=(*graph.edges, *new))
         return placed if self.keeps_boxes else self._singly_held(placed)
+
+    def _is_raised(self, node: Node, floor: float) -> bool:
+        """Return whether a thing that usually stands on the floor is well above it."""
+        shaped = form(node.class_name, self.knowledge)
+        return shaped is not None and shaped.mount == "floor" and node.box is not None and (
+            bottom(node.box) > floor + RAISED)  # fmt: skip
 
     def _room_of(self, box: Box | None, rooms: Sequence[Node]) -> Node:
         """Return the room whose box is nearest to a box's center; else the first room."""
@@ -380,7 +406,8 @@ class _Reading:
     def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:
         """Return the graph with boxes: the file's, if a person can walk to everything; else those of a layout."""
         if self.keeps_boxes and has_geometry(graph):
-            joined, doors = with_doors(graph, self.knowledge)
+            joined, own, doors = with_doors(graph, self.knowledge)
+            self.note("doors of the file, by their boxes", own)
             self.note("doors that the file leaves out", doors)
             return joined
         found, notes = with_boxes(graph, self.floors, self.file, self.knowledge)
@@ -390,8 +417,16 @@ class _Reading:
 
 
 def _is_outline(size: Vector) -> bool:
-    """Return whether a room has an outline and no height."""
-    return size[1] == 0 and min(size[0], size[2]) > 0
+    """Return whether a room has an outline, or a floor, and no height."""
+    return size[1] < LOWEST_ROOM and min(size[0], size[2]) > 0
+
+
+def _by_height(entry: Entry, other: Entry) -> str:
+    """Return ON where the sizes and places of the file put a thing on top of its holder; "" where they do not say."""
+    if entry.place is None or entry.size is None or other.place is None or other.size is None:
+        return ""
+    low, high = entry.place[1] - entry.size[1] / 2, other.place[1] + other.size[1] / 2
+    return "ON" if abs(low - high) <= completion.TOUCHING / 2 else ""
 
 
 def _next(graph: EnvironmentGraph) -> int:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import combinations
+from math import hypot
+from typing import NamedTuple
 
-from hearth.homes.geometry import Rect, along_x, bottom, box_over, facing_from, footprint
+from hearth.homes.geometry import Rect, bottom, box_over, facing_from, footprint
 from hearth.homes.plans.home_shell import DOOR_HEIGHT, WALL, shared_wall, strip
 from hearth.homes.plans.walkable_floor import HEAD
 from hearth.kb.knowledge import Knowledge
@@ -87,34 +89,53 @@ def _moved_apart(low: Rect, high: Rect, axis: int, fixed: tuple[bool, bool] = (F
     )
 
 
-def with_doors(graph: EnvironmentGraph, knowledge: Knowledge) -> tuple[EnvironmentGraph, list[str]]:
-    """Return a graph whose rooms have boxes with doors that join its rooms, and a word for each.
+class Doors(NamedTuple):
+    """A graph whose doors are between rooms; the doors of the file among them, and those that were made, in words."""
 
-    A door is made where the file has one in the wall of two rooms. Rooms that are then still apart get doors in the
-    walls that they share, where most floor before the door is free. A graph with a BETWEEN edge stays as it is.
+    graph: EnvironmentGraph
+    own: list[str]
+    made: list[str]
+
+
+def with_doors(graph: EnvironmentGraph, knowledge: Knowledge) -> Doors:
+    """Return a graph whose rooms have boxes with doors that join its rooms.
+
+    A door of the file is between the two rooms in whose wall it is. Rooms that are then still apart get doorways in the
+    walls that they share, where most floor before the doorway is free.
     """
     boxes = {node.id: node.box for node in graph.nodes if node.category == ROOM_CATEGORY and node.box is not None}
     rooms = {room: footprint(box) for room, box in boxes.items()}
-    if len(rooms) < 2 or any(edge.relation == "BETWEEN" for edge in graph.edges):
-        return graph, []
+    if len(rooms) < 2:
+        return Doors(graph, [], [])
     names = {node.id: node.class_name for node in graph.nodes}
-    own = [footprint(node.box) for node in graph.nodes if node.class_name in ("door", "doorjamb") and node.box]
     standing = [footprint(n.box) for n in graph.nodes if n.box is not None and _is_in_the_way(n, n.box, knowledge)]
     walls = list(_walls(rooms))
-    spots = ((wall, _spot_of(door, rooms[wall[0]], wall)) for door in own for wall in walls)
-    chosen = list({wall: (wall, spot) for wall, spot in spots if spot is not None}.values())
-    chosen += _missing(rooms, walls, chosen, standing)
-    first = max(node.id for node in graph.nodes) + 1
-    low = min(bottom(box) for box in boxes.values())
-    nodes, edges = [], []
-    for number, ((one, other, side, _, _), (start, end)) in enumerate(chosen, first):
+    between: dict[int, list[int]] = {}
+    for edge in graph.edges:
+        if edge.relation == "BETWEEN" and edge.target in rooms:
+            between.setdefault(edge.source, []).append(edge.target)
+    own: dict[int, Wall] = {}
+    for node in graph.nodes if not between else ():
+        wall = _wall_of(footprint(node.box), rooms, walls) if node.class_name in DOORS and node.box else None
+        if wall is not None:
+            own[node.id] = wall
+    joined = [*own.values(), *((*pair, "", 0.0, 0.0) for pair in between.values() if len(pair) == 2)]
+    found = _missing(rooms, walls, joined, standing) if own or not between else []
+    edges = [Edge(door, "BETWEEN", room) for door, wall in own.items() for room in wall[:2]]
+    first, low = max(node.id for node in graph.nodes) + 1, min(bottom(box) for box in boxes.values())
+    nodes = []
+    for number, ((one, other, side, _, _), (start, end)) in enumerate(found, first):
         hole = strip(rooms[one], side, start, end, -2 * WALL)
         box = box_over(hole, low, low + DOOR_HEIGHT)
         nodes.append(Node(number, "doorjamb", "Doors", box=_rounded(box), yaw=facing_from(side)))
         edges += [Edge(number, "INSIDE", one), Edge(number, "BETWEEN", one), Edge(number, "BETWEEN", other)]
     made = replace(graph, nodes=(*graph.nodes, *nodes), edges=(*graph.edges, *edges))
-    return made, [f"{names[wall[0]]} and {names[wall[1]]}" for wall, _ in chosen]
+    words = [[f"{names[wall[0]]} and {names[wall[1]]}" for wall in each] for each in (own.values(), dict(found))]
+    return Doors(made, *words)
 
+
+DOORS = ("door", "doorjamb")
+"""Classes of doors of a file."""
 
 Wall = tuple[int, int, str, float, float]
 """Two rooms, the side of the first that faces the second, and from where to where they share it."""
@@ -125,7 +146,7 @@ Spot = tuple[float, float]
 
 def _is_in_the_way(node: Node, box: Box, knowledge: Knowledge) -> bool:
     """Return whether a person has to walk around a thing."""
-    if node.category == ROOM_CATEGORY or node.class_name in ("door", "doorjamb", CHARACTER_CLASS):
+    if node.category == ROOM_CATEGORY or node.class_name in (*DOORS, CHARACTER_CLASS):
         return False
     return bottom(box) < HEAD and not knowledge.has(node.class_name, "GRABBABLE")
 
@@ -144,19 +165,20 @@ def _walls(rooms: Mapping[int, Rect]) -> Iterator[Wall]:
             yield low, high, found[0], found[1] + 2 * WALL, found[2] - 2 * WALL
 
 
-def _spot_of(door: Rect, room: Rect, wall: Wall) -> Spot | None:
-    """Return where a door of the file is in a wall of a room; None where it is in another."""
-    _, _, side, start, end = wall
-    line = strip(room, side, start, end, -2 * WALL)
-    if line.inset(-NEAR_DOOR).overlap(door.inset(-0.01)) <= 0:
-        return None
-    width = min(max(NARROWEST, door.width, door.depth), WIDTH, end - start)
-    middle = door.center[0] if along_x(side) else door.center[1]
-    begin = round(min(max(middle - width / 2, start), end - width), 4)
-    return begin, round(begin + width, 4)
+def _wall_of(door: Rect, rooms: Mapping[int, Rect], walls: Sequence[Wall]) -> Wall | None:
+    """Return the wall that a door of the file is in, or stands next to; None where it is in none."""
+    x, z = door.center
+
+    def away(wall: Wall) -> float:
+        one, _, side, start, end = wall
+        line = strip(rooms[one], side, start, end, -2 * WALL)
+        return hypot(max(line.x0 - x, x - line.x1, 0.0), max(line.z0 - z, z - line.z1, 0.0))
+
+    best = min(walls, key=away, default=None)
+    return best if best is not None and away(best) <= NEAR_DOOR else None
 
 
-def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], chosen: Sequence[tuple[Wall, Spot]],
+def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], joined: Sequence[Wall],
              standing: Sequence[Rect]) -> list[tuple[Wall, Spot]]:  # fmt: skip
     """Return a door in the longest walls that join rooms which no door joins yet."""
     part = {room: room for room in rooms}
@@ -167,7 +189,7 @@ def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], chosen: Sequence[
         part.update({room: new for room in part if part[room] == old})
         return old != new
 
-    for wall, _ in chosen:
+    for wall in joined:
         join(wall[0], wall[1])
     for wall in sorted(walls, key=lambda wall: wall[3] - wall[4]):
         if join(wall[0], wall[1]):

@@ -102,8 +102,9 @@ def _is_thing(node: Node) -> bool:
 def _furnished(graph: EnvironmentGraph, extents: Extents, knowledge: Knowledge) -> _Furnished:
     """Return a graph with rooms and doors, in which the things that nobody can walk to have no boxes."""
     named = [node.class_name for node in graph.nodes if node.id in extents.boxes]
-    roomed, doors = with_doors(_with_rooms(graph, extents.boxes), knowledge)
-    notes: Notes = [(extents.how, named), ("doors that the file leaves out", doors)]
+    roomed, own_doors, doors = with_doors(_with_rooms(graph, extents.boxes), knowledge)
+    notes: Notes = [(extents.how, named), ("doors of the file, by their boxes", own_doors)]
+    notes.append(("doors that the file leaves out", doors))
     lost = _beyond_rooms(roomed)
     found = _bare(roomed, lost)
     moved = _within_reach(found, knowledge)

@@ -20,6 +20,9 @@ ROOM_GROUPS = frozenset({"rooms", "regions", "regionannotations", "areas", "zone
 ROOM_KINDS = frozenset({"room", "roomnodeattributes", "region", "area", "zone"})
 """Words for the kind of an entry that is a room."""
 
+FLOORS = frozenset({"floor", "floors"})
+"""Words for the floor of a room."""
+
 _BUILDING = re.compile(r"B\(?\d+\)?")
 """A building of Hydra: `B0`, `B(0)`."""
 
@@ -28,7 +31,10 @@ _ROOM = re.compile(r"(?:R|room|region)[\s_.-]?\(?\d+\)?", re.IGNORECASE)
 
 
 def classes_of(entities: Sequence[Entity], ties: Ties, shape: Shape, knowledge: Knowledge) -> dict[int, ClassOf]:
-    """Return the class of each entry, by its `id()`: of its label; of a room that is only numbered, by its things."""
+    """Return the class of each entry, by its `id()`: of its label; of a room that is only numbered, by its things.
+
+    Of several floors in a file without rooms, each is that of a room.
+    """
     found = {id(entity): class_of(entity.label, shape, knowledge) for entity in entities}
     rooms = []
     for entity in entities:
@@ -36,10 +42,13 @@ def classes_of(entities: Sequence[Entity], ties: Ties, shape: Shape, knowledge: 
             found[id(entity)] = ClassOf("", "building")
         elif not found[id(entity)].by and _is_numbered_room(entity):
             rooms.append(entity)
+    if not rooms and not any(knowledge.is_room(each.name) for each in found.values()):
+        floors = [each for each in entities if key_of(each.label) in FLOORS and box_of(each, shape) is not None]
+        rooms = floors if len(floors) > 1 else []
     things = _things_in(rooms, entities, ties, found, shape) if rooms else {}
     for room in rooms:
         names = [name for name in things[id(room)] if not knowledge.is_room(name)]
-        if names:
+        if names or key_of(room.label) in FLOORS:
             found[id(room)] = ClassOf(room_for(names, knowledge), "things in it")
     return found
 
@@ -64,8 +73,9 @@ def _things_in(
         held = [id(holder) for _, holder in above.get(id(entity), [])] if name else []
         place = place_of(entity, shape) if name and not held else None
         for room, (center, size) in boxes if place is not None else ():
-            sides = zip(place.point, center, size, strict=True) if place is not None else ()
-            if all(abs(at - middle) <= extent / 2 for at, middle, extent in sides if extent > 0):
+            # Things of a room lie over its outline: the axis along which that is flat does not count.
+            sides = sorted(zip(size, place.point, center, strict=True)) if place is not None else []
+            if all(abs(at - middle) <= extent / 2 for extent, at, middle in sides[1:]):
                 held.append(id(room))
         for room_id in held[:1]:
             found[room_id].append(name)
