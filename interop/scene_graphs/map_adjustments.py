@@ -1,4 +1,4 @@
-"""Maps whose walls run askew to their axes, and rooms whose places are corners, adjusted to what is usual."""
+"""Maps whose walls run askew to their axes, and rooms whose places are corners: both are put right."""
 
 from __future__ import annotations
 

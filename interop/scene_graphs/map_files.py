@@ -30,7 +30,7 @@ def map_of(path: Path) -> Any:
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
-        raise HearthError.of(Code.SYNTAX, f"not XML: {error}", file=str(path), line=error.position[0]) from error
+        raise HearthError.of(Code.SYNTAX, f"not XML: {error}", file=str(path)) from error
     return {root.tag: {tag: [_plain(each) for each in root.findall(tag)] for tag in ("link", "joint")}}
 
 

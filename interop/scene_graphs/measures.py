@@ -115,6 +115,12 @@ def box_of(entity: Entity, shape: Shape, up: str = "z") -> tuple[Vector, Vector]
     return vectors.around((low, high)) if low and high else None
 
 
+def extent_of(entity: Entity, shape: Shape) -> tuple[Vector, Vector] | None:
+    """Return center and size of an entry's box, however the file says them; None where it does not."""
+    place, size = place_of(entity, shape), size_of(entity, shape)
+    return (place.point, size.extents) if place is not None and size is not None else None
+
+
 def _ends(entity: Entity, shape: Shape, end: str) -> Iterator[Any]:
     """Yield the lowest or the highest corner: a point, or `x_min`, `y_min`, `z_min` among the other fields."""
     yield from values_of(entity, shape.fields[end])

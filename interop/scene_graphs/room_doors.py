@@ -34,12 +34,15 @@ FREE = 0.6
 """Metres before a door, on either side, that furniture should leave free."""
 
 
-def with_walls_between(rooms: Mapping[int, Rect], farthest: float = THICKEST_WALL) -> dict[int, Rect] | None:
+def with_walls_between(
+    rooms: Mapping[int, Rect], farthest: float = THICKEST_WALL, deepest: float = DEEPEST_OVERLAP
+) -> dict[int, Rect] | None:
     """Return floors of rooms with a wall of ours between any two that face each other; None where they overlap.
 
     Args:
         rooms: floors as the file has them.
         farthest: metres of a gap that is closed.
+        deepest: metres of an overlap along one axis that is divided between two rooms.
     """
     found = dict(rooms)
     fixed: set[tuple[int, int]] = set()
@@ -47,7 +50,7 @@ def with_walls_between(rooms: Mapping[int, Rect], farthest: float = THICKEST_WAL
     for pair in pairs:
         gaps = _gaps(found[pair[0]], found[pair[1]])
         axis = 0 if gaps[0] >= gaps[1] else 1  # along it the two floors lie farther apart
-        if gaps[axis] < -DEEPEST_OVERLAP:
+        if gaps[axis] < -deepest:
             return None
         if gaps[axis] <= farthest and gaps[1 - axis] < 0:
             low, high = sorted(pair, key=lambda room: found[room].center[axis])
@@ -119,7 +122,7 @@ def with_doors(graph: EnvironmentGraph, knowledge: Knowledge) -> Doors:
         wall = _wall_of(footprint(node.box), rooms, walls) if node.class_name in DOORS and node.box else None
         if wall is not None:
             own[node.id] = wall
-    joined = [*own.values(), *((*pair, "", 0.0, 0.0) for pair in between.values() if len(pair) == 2)]
+    joined = [wall[:2] for wall in own.values()] + [(pair[0], pair[1]) for pair in between.values() if len(pair) == 2]
     found = _missing(rooms, walls, joined, standing) if own or not between else []
     edges = [Edge(door, "BETWEEN", room) for door, wall in own.items() for room in wall[:2]]
     first, low = max(node.id for node in graph.nodes) + 1, min(bottom(box) for box in boxes.values())
@@ -178,7 +181,7 @@ def _wall_of(door: Rect, rooms: Mapping[int, Rect], walls: Sequence[Wall]) -> Wa
     return best if best is not None and away(best) <= NEAR_DOOR else None
 
 
-def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], joined: Sequence[Wall],
+def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], joined: Sequence[tuple[int, int]],
              standing: Sequence[Rect]) -> list[tuple[Wall, Spot]]:  # fmt: skip
     """Return a door in the longest walls that join rooms which no door joins yet."""
     part = {room: room for room in rooms}
@@ -189,8 +192,8 @@ def _missing(rooms: Mapping[int, Rect], walls: Sequence[Wall], joined: Sequence[
         part.update({room: new for room in part if part[room] == old})
         return old != new
 
-    for wall in joined:
-        join(wall[0], wall[1])
+    for one, other in joined:
+        join(one, other)
     for wall in sorted(walls, key=lambda wall: wall[3] - wall[4]):
         if join(wall[0], wall[1]):
             found.append((wall, _freest(rooms[wall[0]], wall, standing)))

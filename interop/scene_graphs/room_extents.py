@@ -16,7 +16,7 @@ from hearth.homes.lint import CHECKS, View
 from hearth.homes.plans.home_shell import WALL
 from hearth.homes.plans.walkable_floor import REACH, gaps
 from hearth.interop.scene_graphs import completion
-from hearth.interop.scene_graphs.room_doors import with_doors, with_walls_between
+from hearth.interop.scene_graphs.room_doors import DEEPEST_OVERLAP, DOORS, with_doors, with_walls_between
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.graph import Box, EnvironmentGraph, Node
 from hearth.schemas.vocabulary import CHARACTER_CLASS, ROOM_CATEGORY
@@ -185,7 +185,8 @@ def _extents(graph: EnvironmentGraph, floors: Sequence[Box]) -> Iterator[Extents
         yield Extents(boxes, "rooms of the file")
         return
     held: dict[int, list[Box]] = {room: [] for room in rooms}
-    boxes = {node.id: node.box for node in graph.nodes if node.box is not None}
+    # A door in a wall belongs to two rooms, and says where neither ends.
+    boxes = {node.id: node.box for node in graph.nodes if node.box is not None and node.class_name not in DOORS}
     for edge in graph.edges:
         if edge.relation == "INSIDE" and edge.target in held and edge.source in boxes:
             held[edge.target].append(boxes[edge.source])
@@ -195,7 +196,7 @@ def _extents(graph: EnvironmentGraph, floors: Sequence[Box]) -> Iterator[Extents
     low = min(bottom(box) for each in held.values() for box in each)
     around = {room: footprint(own[room]) if room in own else Rect.over(each).inset(-MARGIN)
               for room, each in things.items()}  # fmt: skip
-    outlines = [("rooms around their things", with_walls_between(around, MOST_APART))]
+    outlines = [("rooms around their things", with_walls_between(around, MOST_APART, 2 * MARGIN + DEEPEST_OVERLAP))]
     by_floors = {room: _floor_under(each, floors) for room, each in things.items()}
     known = {room: rect for room, rect in by_floors.items() if rect is not None}
     if len(known) == len(rooms):

@@ -9,7 +9,7 @@ from hearth.interop.scene_graphs.class_names import ClassOf, class_of, is_number
 from hearth.interop.scene_graphs.completion import room_for
 from hearth.interop.scene_graphs.entities import Entity
 from hearth.interop.scene_graphs.links import Ties, holders
-from hearth.interop.scene_graphs.measures import box_of, place_of
+from hearth.interop.scene_graphs.measures import extent_of, place_of
 from hearth.interop.scene_graphs.shape import Shape
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
@@ -43,7 +43,7 @@ def classes_of(entities: Sequence[Entity], ties: Ties, shape: Shape, knowledge: 
         elif not found[id(entity)].by and _is_numbered_room(entity):
             rooms.append(entity)
     if not rooms and not any(knowledge.is_room(each.name) for each in found.values()):
-        floors = [each for each in entities if key_of(each.label) in FLOORS and box_of(each, shape) is not None]
+        floors = [each for each in entities if key_of(each.label) in FLOORS and extent_of(each, shape) is not None]
         rooms = floors if len(floors) > 1 else []
     things = _things_in(rooms, entities, ties, found, shape) if rooms else {}
     for room in rooms:
@@ -67,7 +67,7 @@ def _things_in(
     """Return the classes of the things in each room, by its `id()`: through their holders, else by their places."""
     found: dict[int, list[str]] = {id(room): [] for room in rooms}
     above = holders(ties.ties, lambda entity: id(entity) in found)
-    boxes = [(room, box) for room in rooms if (box := box_of(room, shape)) is not None]
+    boxes = [(room, box) for room in rooms if (box := extent_of(room, shape)) is not None]
     for entity in entities:
         name = classes[id(entity)].name
         held = [id(holder) for _, holder in above.get(id(entity), [])] if name else []

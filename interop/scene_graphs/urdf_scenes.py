@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hearth.kb.spelling import key_of
@@ -26,16 +26,26 @@ def joined(data: Any) -> Any:
         parent, child = (str(_plain(joint.get(end)).get("link", "")) for end in ("parent", "child"))
         if parent == WORLD:
             placed[child] = _plain(joint.get("origin"))
-    return {"objects": [_object(link, placed[str(link.get("name"))]) for link in map(_plain, links)
-                        if str(link.get("name")) in placed]}  # fmt: skip
+    return with_rooms(
+        [_object(each, placed[str(each.get("name"))]) for each in map(_plain, links) if str(each.get("name")) in placed]
+    )
+
+
+def with_rooms(things: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return things whose `rooms` are names as a scene with these rooms; a door of two rooms is between them."""
+    names = dict.fromkeys(str(room) for thing in things for room in thing.get("rooms", ()) if room)
+    objects = []
+    for thing in things:
+        own = [str(room) for room in thing.pop("rooms", ()) if room]
+        place: dict[str, Any] = {"between": own[:2]} if len(own) > 1 and "door" in str(thing.get("label")) else {}
+        objects.append({**thing, **(place or ({"room": own[0]} if own else {}))})
+    return {"rooms": [{"id": name, "label": name} for name in names], "objects": objects}
 
 
 def _object(link: Mapping[str, Any], origin: Mapping[str, Any]) -> dict[str, Any]:
     found: dict[str, Any] = {"id": link.get("name"), "label": link.get("category", link.get("name"))}
     room = link.get("rooms", link.get("room", link.get("inrooms")))
-    rooms = room.split(",") if isinstance(room, str) else room if isinstance(room, list) else []
-    if rooms and rooms[0]:
-        found["room"] = rooms[0]
+    found["rooms"] = room.split(",") if isinstance(room, str) else room if isinstance(room, list) else []
     size, xyz, rpy = (_vector(value) for value in (link.get("boundingbox"), origin.get("xyz"), origin.get("rpy")))
     return found | ({"size": size} if size else {}) | {"pose": {"position": xyz, "orientation": rpy}}
 
