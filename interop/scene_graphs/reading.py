@@ -121,7 +121,8 @@ class _Reading:
                 self._leave(Code.BAD_GRAPH, message, entity.path, remedy)
         if not kept:
             raise HearthError(self.left_out[:20])
-        shapes = [form(classes[id(entity)].name, self.knowledge) for entity in kept]
+        names = [classes[id(entity)].name for entity in kept]
+        shapes = [None if self.knowledge.is_room(name) else form(name, self.knowledge) for name in names]
         units = units_of(kept, shapes, self.shape, self.unit_word)
         entries = [entry_of(entity, classes[id(entity)].name, self.shape, units) for entity in kept]
         entries, angle = straightened(entries)

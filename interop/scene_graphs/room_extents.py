@@ -39,7 +39,7 @@ HEIGHT = 2.6
 MOST_LOST = 0.5
 """Share of the things of a file that may be out of reach; with more of them, its boxes as a whole can't be."""
 
-MOST_APART = 3.0
+MOST_APART = 5.0
 """Metres between the things of two rooms over which the rooms are still next to one another."""
 
 FAR_OFF = 5.0
