@@ -92,6 +92,11 @@ def repeated_ids(graph: EnvironmentGraph, file: str) -> list[Diagnostic]:
     ]
 
 
+def next_id(graph: EnvironmentGraph) -> int:
+    """Return an id that no node of a graph has."""
+    return max(node.id for node in graph.nodes) + 1
+
+
 def rooms_above(rooms: Sequence[Node], things_below: Mapping[int, Sequence[int]]) -> dict[int, int]:
     """Return the room of each room, and of each thing in one through its holders: the room with the fewest between."""
     return spread({room.id: room.id for room in rooms}, [room.id for room in rooms], things_below)

@@ -6,29 +6,26 @@ from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from hearth.homes.from_graph.layout_from_boxes import has_geometry
-from hearth.homes.geometry import bottom
 from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
 from hearth.interop.scene_graphs import completion, hydra, omnigibson, urdf_scenes
 from hearth.interop.scene_graphs.class_names import ClassOf, class_of
 from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
 from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
-from hearth.interop.scene_graphs.fillings import CLASSES_BY, Filling, ReadGraph
+from hearth.interop.scene_graphs.fillings import CLASSES_BY, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.geometry_faults import geometry_faults
+from hearth.interop.scene_graphs.graph_completion import GraphCompletion
 from hearth.interop.scene_graphs.links import Ties, holders, ties_of
 from hearth.interop.scene_graphs.map_adjustments import straightened, with_middles
-from hearth.interop.scene_graphs.room_doors import with_doors
-from hearth.interop.scene_graphs.room_extents import HEIGHT, with_boxes
+from hearth.interop.scene_graphs.room_extents import HEIGHT
 from hearth.interop.scene_graphs.room_kinds import classes_of
 from hearth.interop.scene_graphs.shape import Shape, usual
-from hearth.interop.scene_graphs.single_holders import with_single_holders
 from hearth.interop.scene_graphs.units_of_length import unit_word
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
-from hearth.schemas.diagnostics import Diagnostic, HearthError
+from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
@@ -36,9 +33,6 @@ from hearth.schemas.vocabulary import FIRST_ADDED_ID, ROOM_CATEGORY
 
 LOWEST_ROOM = 1.0
 """Metres: a room that is lower is its floor."""
-
-RAISED = 0.3
-"""Metres above the floor from which a thing stands on something else."""
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
@@ -65,7 +59,7 @@ def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") ->
     if found.is_full or len(found.entities) > MOST_ENTRIES:
         message = f"more than {MOST_ENTRIES:,} things and rooms"
         raise HearthError.of(Code.FILE_TOO_LARGE, message, file=file, suggestion="write a file for each floor or room")
-    return _Reading(shape, knowledge, file, unit_word=unit_word(data, shape)).read(
+    return _Reading(knowledge, file, shape=shape, unit_word=unit_word(data, shape)).read(
         found.entities, ties_of(found, shape)
     )
 
@@ -83,10 +77,10 @@ def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> R
         raise HearthError.of(Code.FILE_TOO_LARGE, message, file=file, suggestion="write a file for each floor or room")
     if faults := completion.repeated_ids(graph, file):
         raise HearthError(faults)
-    reading = _Reading(usual(), knowledge, file, keeps_boxes=True)
+    reading = _Reading(knowledge, file, keeps_boxes=True)
     if not any(node.category == ROOM_CATEGORY for node in graph.nodes):
         name = completion.room_for([node.class_name for node in graph.nodes], knowledge)
-        room = Node(_next(graph), name, ROOM_CATEGORY)
+        room = Node(completion.next_id(graph), name, ROOM_CATEGORY)
         graph = replace(graph, nodes=(*graph.nodes, room))
         reading.note("rooms made, as no room of the file is known", [name])
     nodes = [completion.with_usual_fields(node, knowledge) for node in graph.nodes]
@@ -97,17 +91,10 @@ def complete(graph: EnvironmentGraph, knowledge: Knowledge, file: str = "") -> R
 
 
 @dataclass
-class _Reading:
+class _Reading(GraphCompletion):
     """The reading of one file, step by step."""
 
-    shape: Shape
-    knowledge: Knowledge
-    file: str
-    keeps_boxes: bool = False
-    notes: list[Filling] = field(default_factory=list)
-    left_out: list[Diagnostic] = field(default_factory=list)
-    floors: list[Box] = field(default_factory=list)
-    paths: dict[int, str] = field(default_factory=dict)
+    shape: Shape = field(default_factory=usual)
     unit_word: str = ""
 
     def read(self, entities: Sequence[Entity], ties: Ties) -> ReadGraph:
@@ -154,17 +141,6 @@ class _Reading:
         boxes = [Box(floor.place, floor.size) for floor in found if floor.place and floor.size]
         return [box for box in boxes if min(box.size[::2]) > 0 and max(box.size) <= LONGEST_HOME]
 
-    def counted(self) -> tuple[Filling, ...]:
-        """Return what was noted, in its order."""
-        return tuple(note for note in self.notes if note.number)
-
-    def note(self, what: str, examples: Sequence[str]) -> None:
-        """Note what was understood, filled in or changed, with a word for each case."""
-        self.notes.append(Filling(what, len(examples), tuple(dict.fromkeys(examples))[:4]))
-
-    def _leave(self, code: Code, message: str, path: str, suggestion: str = "") -> None:
-        self.left_out.append(Diagnostic(code, f"{path}: {message}", self.file, suggestion=suggestion))
-
     def _note_classes(self, entities: Sequence[Entity], classes: Mapping[int, ClassOf]) -> None:
         ways: dict[str, list[str]] = {}
         for entity in entities:
@@ -187,17 +163,6 @@ class _Reading:
                 if first != entity.path:
                     message = f"its id `{str(value)[:60]}` is that of {first}, too"
                     self._leave(Code.DUPLICATE, message, entity.path, "give each an id of its own")
-
-    def _singly_held(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        found = with_single_holders(graph, self.knowledge)
-        names = {node.id: f"{node.class_name} ({node.id})" for node in graph.nodes}
-        words = [f"{names[edge.source]} {edge.relation} {names[edge.target]}" for edge in found.second]
-        self.note("second holders, left out", words)
-        for circle in found.circles:
-            way = " ".join(f"{names[edge.source]} {edge.relation}" for edge in circle)
-            message = f"a circle of holders: {way} {names[circle[0].source]}; the last relation is left out"
-            self._leave(Code.LOOP, message, self.paths.get(circle[-1].source, ""), "name another holder, or none")
-        return replace(graph, edges=tuple(found.edges))
 
     def _named_rooms(self, ties: Ties, entries: Sequence[Entry]) -> dict[str, Entry]:
         """Return an entry for each room that entries only name; a room for all where there is none."""
@@ -318,104 +283,6 @@ class _Reading:
         sized = [each.class_name for each in bare if not self.knowledge.is_room(each.class_name)]
         self.note("sizes from the knowledge", sized)
 
-    def completed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        """Return the graph with everything that a home of ours has and the file does not say."""
-        graph = self._placed(graph)
-        graph = self._housed(graph)
-        person = completion.with_person(graph, _next(graph))
-        self.note("person, in the first room", ["character"] if person is not graph else [])
-        graph = self._both_ways(self._measured(person))
-        close = sum(edge.relation == "CLOSE" for edge in graph.edges)
-        if self.keeps_boxes and close >= len(graph.nodes):
-            return graph
-        near = completion.nearness(graph, self.knowledge)
-        for relation in ("CLOSE", "FACING"):
-            self.note(f"{relation} from the boxes", [relation for edge in near if edge.relation == relation])
-        return replace(graph, edges=(*graph.edges, *near))
-
-    def _both_ways(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        """Return the graph with nearness in both directions."""
-        had = set(graph.edges)
-        back = {Edge(edge.target, "CLOSE", edge.source) for edge in graph.edges if edge.relation == "CLOSE"} - had
-        return replace(graph, edges=(*graph.edges, *sorted(back)))
-
-    def _placed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        """Return the graph with a place for each thing that the file puts nowhere: by its box, or its usual one."""
-        rooms = {node.id: node for node in graph.nodes if node.category == ROOM_CATEGORY}
-        held = {edge.source for edge in graph.edges if edge.relation in ("ON", "INSIDE") and edge.target not in rooms}
-        housed = {edge.source for edge in graph.edges if edge.relation == "INSIDE"}
-        things = [node for node in graph.nodes if node.id not in rooms]
-        floor = min((bottom(node.box) for node in things if node.box is not None), default=0.0)
-        between = {e.source: e.target for e in graph.edges if e.relation == "BETWEEN" and e.target in rooms}
-        by: dict[str, list[str]] = {"box": [], "usual": [], "room": []}
-        new: list[Edge] = []
-        for node in things:
-            shaped = form(node.class_name, self.knowledge)
-            small = shaped is not None and (shaped.mount in ("item", "sunk") or self._is_raised(node, floor))
-            if node.id in held or (node.id in housed and not (small and node.box)):
-                continue
-            place, how = completion.held_by_box(node, things, self.knowledge) if small else None, "box"
-            if place is None and node.id not in housed and node.box is None:
-                place, how = completion.usual_place(node, graph.nodes, self.knowledge), "usual"
-            if place is None and node.id in between:
-                place, how = ("INSIDE", rooms[between[node.id]]), "room"
-            elif place is None and node.id not in housed:
-                place, how = ("INSIDE", self._room_of(node.box, list(rooms.values()))), "room"
-            if place is not None:
-                new.append(Edge(node.id, place[0], place[1].id))
-                by[how].append(f"{node.class_name} ({node.id}) {place[0]} {place[1].class_name} ({place[1].id})")
-        self.note("things on or in others by their boxes", by["box"])
-        self.note("things where they usually are, as the file does not say", by["usual"])
-        self.note("things in a room that the file does not name", by["room"])
-        placed = replace(graph, edges=(*graph.edges, *new))
-        return placed if self.keeps_boxes else self._singly_held(placed)
-
-    def _is_raised(self, node: Node, floor: float) -> bool:
-        """Return whether a thing that usually stands on the floor is well above it."""
-        shaped = form(node.class_name, self.knowledge)
-        return shaped is not None and shaped.mount == "floor" and node.box is not None and (
-            bottom(node.box) > floor + RAISED)  # fmt: skip
-
-    def _room_of(self, box: Box | None, rooms: Sequence[Node]) -> Node:
-        """Return the room whose box is nearest to a box's center; else the first room."""
-        known = [(room, room.box) for room in rooms if room.box is not None]
-        if box is None or not known:
-            return rooms[0]
-        near = box
-
-        def outside(held: Box) -> float:
-            gaps = (abs(near.center[axis] - held.center[axis]) - held.size[axis] / 2 for axis in (0, 2))
-            return max(0.0, *gaps)
-
-        return min(known, key=lambda each: outside(each[1]))[0]
-
-    def _housed(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        """Return the graph in which everything that is on or in something is INSIDE the room of that as well."""
-        rooms = [node for node in graph.nodes if node.category == ROOM_CATEGORY]
-        below = completion.below(graph)
-        above = completion.rooms_above(rooms, below)
-        had = set(graph.edges)
-        new: list[Edge] = []
-        for node in graph.nodes:
-            if node.category != ROOM_CATEGORY:
-                if node.id not in above:
-                    above[node.id] = self._room_of(node.box, rooms).id
-                    completion.spread(above, [node.id], below)
-                new.append(Edge(node.id, "INSIDE", above[node.id]))
-        return replace(graph, edges=(*graph.edges, *(edge for edge in new if edge not in had)))
-
-    def _measured(self, graph: EnvironmentGraph) -> EnvironmentGraph:
-        """Return the graph with boxes: the file's, if a person can walk to everything; else those of a layout."""
-        if self.keeps_boxes and has_geometry(graph):
-            joined, own, doors = with_doors(graph, self.knowledge)
-            self.note("doors of the file, by their boxes", own)
-            self.note("doors that the file leaves out", doors)
-            return joined
-        found, notes = with_boxes(graph, self.floors, self.file, self.knowledge)
-        for what, examples in notes:
-            self.note(what, examples)
-        return found
-
 
 def _is_outline(size: Vector) -> bool:
     """Return whether a room has an outline, or a floor, and no height."""
@@ -428,10 +295,6 @@ def _by_height(entry: Entry, other: Entry) -> str:
         return ""
     low, high = entry.place[1] - entry.size[1] / 2, other.place[1] + other.size[1] / 2
     return "ON" if abs(low - high) <= completion.TOUCHING / 2 else ""
-
-
-def _next(graph: EnvironmentGraph) -> int:
-    return max(node.id for node in graph.nodes) + 1
 
 
 def _numbers(entries: Sequence[Entry]) -> dict[int, int]:
