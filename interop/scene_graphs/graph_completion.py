@@ -98,12 +98,15 @@ class GraphCompletion:
         between = {e.source: e.target for e in graph.edges if e.relation == "BETWEEN" and e.target in rooms}
         by: dict[str, list[str]] = {"box": [], "usual": [], "room": []}
         new: list[Edge] = []
+        steady = [node for node in things if not self.knowledge.has(node.class_name, "GRABBABLE")]
         for node in things:
             shaped = form(node.class_name, self.knowledge)
             small = shaped is not None and (shaped.mount in ("item", "sunk") or self._is_raised(node, floor))
             if node.id in held or (node.id in housed and not (small and node.box)):
                 continue
-            place, how = completion.held_by_box(node, things, self.knowledge) if small else None, "box"
+            # Furniture stands on furniture, and never on a thing that a person picks up.
+            under = steady if shaped is not None and shaped.mount == "floor" else things
+            place, how = completion.held_by_box(node, under, self.knowledge) if small else None, "box"
             if place is None and node.id not in housed and node.box is None:
                 place, how = completion.usual_place(node, graph.nodes, self.knowledge), "usual"
             if place is None and node.id in between:
