@@ -47,8 +47,7 @@ def program(
 ) -> None:
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
-    A home's file stays as it is, and the pictures end where the program stops. In a home of ours that does not suffice,
-    things are added and states changed, which the output names.
+    A home's file stays as it is, and the pictures end where the program stops. To a home of ours, things may be added.
 
     \b
     Examples:
