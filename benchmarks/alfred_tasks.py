@@ -3,8 +3,12 @@
 Each trajectory of an archive is read as `build` reads it. An environment is sampled for its program by action set 3.
 Its goal must not hold at the start, and must hold at the end.
 
+With `--classes` the table of classes is printed instead: each object type that the trajectories name, the class of
+ours, and its source: a name of the knowledge, or `alfred_classes.csv`. Types without a class are refused by name.
+
 Example:
   python benchmarks/alfred_tasks.py alfred-sample.zip --only valid_unseen --home maple
+  python benchmarks/alfred_tasks.py alfred-sample.zip --classes
 """
 
 from __future__ import annotations
@@ -20,7 +24,7 @@ import hearth
 from hearth.interop.alfred_goals import alfred_goal
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.loading.load import default
-from hearth.pipelines.readers.alfred_steps import UnreadableStepError, steps_of
+from hearth.pipelines.readers.alfred_steps import UnreadableStepError, class_of, steps_of
 from hearth.schemas.failures import Failure
 from hearth.simulation.goal_trace import Trace
 from hearth.simulation.rules import CONSEQUENCES
@@ -28,14 +32,18 @@ from hearth.simulation.world.home import Home
 
 
 def main() -> None:
-    """Print the counts, and each trajectory that misses its goal."""
+    """Print the counts, and each trajectory that misses its goal; or the table of classes."""
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     options.add_argument("archive", type=Path)
     options.add_argument("--only", default="", help="files whose path has this text")
     options.add_argument("--home", default="maple")
     options.add_argument("--seed", type=int, default=0)
+    options.add_argument("--classes", action="store_true", help="print the table of classes")
     given = options.parse_args()
     known = default().of_set(3)
+    if given.classes:
+        print(table_of_classes(given.archive, given.only, known))
+        return
     home = hearth.home(given.home, known)
     counts: Counter[str] = Counter()
     with zipfile.ZipFile(given.archive) as archive:
@@ -47,6 +55,32 @@ def main() -> None:
                 if found != "goal reached":
                     print(f"{found}: {name}: {why}")
     print(json.dumps(counts))
+
+
+def table_of_classes(path: Path, only: str, known: Knowledge) -> str:
+    """Return a table of the object types of an archive, each with its class, its source and its trajectories."""
+    counts: Counter[str] = Counter()
+    with zipfile.ZipFile(path) as archive:
+        for name in archive.namelist():
+            if name.endswith("traj_data.json") and only in name:
+                counts.update(types_of(json.loads(archive.read(name))))
+    rows = []
+    for kind, count in sorted(counts.items()):
+        found = class_of(kind, known)
+        by_name = known.object_class(kind)
+        source = "a name of the knowledge" if found and by_name and by_name.name == found else "`alfred_classes.csv`"
+        rows.append(f"| {kind} | {found or 'none'} | {source if found else 'refused by name'} | {count} |")
+    return "\n".join(["| type of ALFRED | class | source | trajectories |", "|---|---|---|---|", *rows])
+
+
+def types_of(trajectory: Any) -> set[str]:
+    """Return the object types that a trajectory's plan and task name."""
+    planned = (each.get("planner_action", {}) for each in trajectory["plan"]["high_pddl"])
+    keys = ("objectId", "coordinateObjectId", "coordinateReceptacleObjectId")
+    found = {str(value[0] if isinstance(value, list) else value).partition("|")[0]
+             for each in planned for key in keys if (value := each.get(key))}  # fmt: skip
+    wanted = ("object_target", "parent_target", "toggle_target", "mrecep_target")
+    return {kind for kind in found | {str(trajectory["pddl_params"].get(key) or "") for key in wanted} if kind}
 
 
 def outcome(trajectory: Any, home: Home, known: Knowledge, seed: int) -> tuple[str, str]:

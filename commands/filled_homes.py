@@ -94,6 +94,7 @@ def _read_graph(source: Source) -> ReadGraph:
     from hearth.interop.procthor.house import is_house, read_house
     from hearth.interop.procthor.house_files import scene_of
     from hearth.interop.procthor.house_reading import read_house_home
+    from hearth.interop.scene_graphs.map_files import MAPS, map_of
     from hearth.interop.scene_graphs.mapping_file import read_mapping
     from hearth.interop.scene_graphs.reading import complete, read_scene
     from hearth.interop.scene_graphs.shape import usual
@@ -101,7 +102,7 @@ def _read_graph(source: Source) -> ReadGraph:
     from hearth.schemas.graph_wrappers import graph_in
 
     known, file = read_knowledge(None), str(source.path)
-    data = scene_of(source.path, source.scene)
+    data = map_of(source.path) if source.path.suffix in MAPS else scene_of(source.path, source.scene)
     shape = usual() if source.mapping is None else read_mapping(source.mapping, known)
     if is_house(data):
         sizes = {each.id: each.size for models in known_assets(source.assets).values() for each in models}

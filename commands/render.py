@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hearth.schemas.graph import EnvironmentGraph
     from hearth.schemas.program import Program
     from hearth.simulation.engine import Execution
+    from hearth.simulation.world.home import Home
 
 
 def program(
@@ -46,21 +47,27 @@ def program(
 ) -> None:
     """Picture a program: PNG files of every step, or a video with a page that plays it; and a contact sheet.
 
+    A home's file stays as it is, and the pictures end where the program stops. To a home of ours, things may be added.
+
     \b
     Examples:
       hearth render-program watch_tv.txt --home maple --out pictures
       hearth render-program watch_tv.txt --home maple --mode video --cameras auto,top --out film
       hearth render-program watch_tv.txt --home maple --mode video --modalities rgb,depth,flow --out film
     """
+    from hearth.homes.library import given_file
     from hearth.kb.loading.load import default
     from hearth.rendering.scene.home_geometry import with_geometry
     from hearth.schemas.failure_words import in_program
+    from hearth.simulation.world.home import Home
 
     given = {"--cameras": cameras != "auto", "--fps": fps != FILM_RATE, "--vary": vary, "--hour": hour != 10}
     _check(mode, width, given)
     known = default()
+    own = graph is not None or given_file(home) is not None
     home, scene = _scene(home, graph, homes, known)
-    execution = _execution(inputs.read_given(file, known, which, strict, columns).program, home, scene, seed, known)
+    program = inputs.read_given(file, known, which, strict, columns).program
+    execution = _execution(program, Home.from_graph(scene, home, known), seed, own=own)
     changes = _changes(scene, home, execution, known)
     place = with_geometry(scene, home, known)
     out.mkdir(parents=True, exist_ok=True)
@@ -312,12 +319,14 @@ def _looked(sources: list[Path], count: int, seed: int) -> Iterator[tuple[Execut
         yield execution, list(tick_visibilities(trajectory_of(execution, graph, known, seed=seed), graph))
 
 
-def _execution(program: Program, home: str, graph: EnvironmentGraph, seed: int, known: Knowledge) -> Execution:
-    from hearth.grounding.grounded_run import attempt
+def _execution(program: Program, home: Home, seed: int, *, own: bool) -> Execution:
+    """Return a program's execution: in a user's `own` home as it is, in one of ours also in a home made for it."""
+    from hearth.grounding.grounded_run import as_given, attempt
     from hearth.schemas.failure_words import in_program
-    from hearth.simulation.world.home import Home
 
-    trial = attempt(program, Home.from_graph(graph, home, known), seed)
+    if own:
+        return as_given(program, home, seed).execution
+    trial = attempt(program, home, seed)
     if isinstance(trial, Failure):
         raise HearthError.of(trial.code, in_program(trial, program, code=False))
     return trial.execution

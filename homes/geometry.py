@@ -91,8 +91,8 @@ def wall_of(yaw: float) -> str:
 
 
 def front_of(yaw: float) -> str:
-    """Return the direction a thing of this yaw faces."""
-    return _FACING[yaw % 360]
+    """Return the direction a thing of this yaw faces, or faces most."""
+    return _FACING[90.0 * (round(yaw / 90.0) % 4)]
 
 
 def footprint(box: Box) -> Rect:

@@ -74,7 +74,8 @@ def _openings(
     if node.class_name not in ("door", "doorjamb") or node.box is None or len(rooms) != 2:
         return
     joined = (boxes[rooms[0]], boxes[rooms[1]])
-    place = _hole(node.box) if node.class_name == "doorjamb" else _beside_leaf(node.box, *joined, about)
+    is_hole = node.class_name == "doorjamb" or _fills_hole(node.box, *joined)
+    place = _hole(node.box) if is_hole else _beside_leaf(node.box, *joined, about)
     if place is None:
         return
     along, start, end, at = place
@@ -82,6 +83,14 @@ def _openings(
     for room in rooms:
         wall = _nearest(footprint(boxes[room]), at, along)
         yield Opening(names[room], wall, start, end, 0.0, top(node.box), door=door, number=node.id)
+
+
+def _fills_hole(leaf: Box, one: Box, other: Box) -> bool:
+    """Return whether a leaf lies along the wall of two rooms, in its hole, as that of a closed door does."""
+    gap_x = max(footprint(one).x0, footprint(other).x0) - min(footprint(one).x1, footprint(other).x1)
+    gap_z = max(footprint(one).z0, footprint(other).z0) - min(footprint(one).z1, footprint(other).z1)
+    runs_along_x = gap_z > gap_x
+    return (leaf.size[0] > leaf.size[2]) == runs_along_x
 
 
 DoorHole = tuple[bool, float, float, float]

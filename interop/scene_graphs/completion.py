@@ -92,6 +92,11 @@ def repeated_ids(graph: EnvironmentGraph, file: str) -> list[Diagnostic]:
     ]
 
 
+def next_id(graph: EnvironmentGraph) -> int:
+    """Return an id that no node of a graph has."""
+    return max(node.id for node in graph.nodes) + 1
+
+
 def rooms_above(rooms: Sequence[Node], things_below: Mapping[int, Sequence[int]]) -> dict[int, int]:
     """Return the room of each room, and of each thing in one through its holders: the room with the fewest between."""
     return spread({room.id: room.id for room in rooms}, [room.id for room in rooms], things_below)
@@ -224,10 +229,9 @@ def with_doors(graph: EnvironmentGraph, first: int) -> tuple[EnvironmentGraph, i
     return replace(graph, nodes=(*graph.nodes, *doors), edges=(*graph.edges, *edges)), len(doors)
 
 
-def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> list[str]:
-    """Return the things of a graph with boxes that nobody can walk to, as `mug (7)`."""
-    names = {str(node.id): f"{node.class_name} ({node.id})" for node in graph.nodes}
-    return [names[fault.found] for fault in CHECKS["on foot"](View(graph, knowledge))]
+def unreachable(graph: EnvironmentGraph, knowledge: Knowledge) -> set[int]:
+    """Return the things of a graph with boxes that nobody can walk to."""
+    return {int(fault.found) for fault in CHECKS["on foot"](View(graph, knowledge))}
 
 
 def without_boxes(graph: EnvironmentGraph) -> EnvironmentGraph:

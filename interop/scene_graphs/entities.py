@@ -125,7 +125,7 @@ class _Walk:
                     return
                 self._element(each, f"{path}[{number}]", group, owner, depth, "")
         elif isinstance(value, dict):
-            grouped = group in self.shape.groups
+            grouped = group in self.shape.groups or self._is_by_id(value)
             for key, each in value.items():
                 if key_of(str(key)) in self.shape.best or self.found.is_full:
                     continue
@@ -134,6 +134,15 @@ class _Walk:
                     self._element(each, below, group, owner, depth, str(key))
                 else:
                     self.visit(each, below, key_of(str(key)), owner, depth + 1)
+
+    def _is_by_id(self, value: Mapping[str, Any]) -> bool:
+        """Return whether a mapping has an entry of its own for each key, each with a label and a place or size."""
+        parts = [each for each in value.values() if isinstance(each, dict)]
+        if len(parts) < 2 or len(parts) < len(value):
+            return False
+        names = (*self.shape.fields["position"], *self.shape.fields["size"], *self.shape.fields["corners"])
+        owns = (dict(_fields(each, depth=DEEPEST_FIELD)) for each in parts)
+        return all(self._label(own) and any(name in own for name in names) for own in owns)
 
     def _element(self, each: Any, path: str, group: str, owner: Entity | None, depth: int, key: str) -> None:
         """Note an element of a list, or a value of a mapping by ids."""
@@ -153,7 +162,7 @@ class _Walk:
 
     def _entity(self, each: dict[str, Any], path: str, group: str, owner: Entity | None, key: str) -> Entity | None:
         own = dict(_fields(_with_best(each, self.shape.best)))
-        label = self._label(own) or key
+        label = self._label(own) or self.shape.namesakes.get(group, "") or key
         if not label:
             return None
         names = _texts(own, self.shape.fields["name"])

@@ -22,6 +22,8 @@ CLASSES_BY = {
     "other name": "classes by other names",
     "table": "classes by the table of classes",
     "number left out": "classes without a number behind them",
+    "adjective left out": "classes without the adjectives before them",
+    "things in it": "rooms that the file only numbers, by the things in them",
     "building": "left out, as the table of classes says",
     "": "things of no class of ours, left out",
 }

@@ -92,6 +92,8 @@ class _Reader:
         if relation is None:
             self.words.append((link.path, link.word))
             return
+        if relation == "" and not link.word and _level(source) is not None and _level(source) == _level(target):
+            return  # neighbors of one layer: places, rooms; neither holds the other
         if relation == "" and not link.word:  # the upper layer of a hierarchy comes first: a room and its things
             source, target = target, source
         self._tie(target if reversed_ else source, relation, source if reversed_ else target)
@@ -118,6 +120,9 @@ class _Reader:
                 self._held(entity, relation, text)
         for text in wanted(entity, names["room"]):
             self._room(entity, text)
+        ends = [self.by_key.get(text) for text in wanted(entity, names["between"])]
+        if len(ends) == 2:
+            self.ties += [Tie(entity, "BETWEEN", end) for end in ends if end is not None and end is not entity]
         for text in wanted(entity, names["children"]):
             child = None if self._is_ambiguous(entity.path, text) else self.by_key.get(text)
             if child is not None:
@@ -171,6 +176,11 @@ class _Reader:
 
     def __repr__(self) -> str:
         return f"_Reader({len(self.ties)} ties)"
+
+
+def _level(entity: Entity) -> object:
+    """Return the layer of an entry of a hierarchy, or the kind of its attributes; None where the file has neither."""
+    return entity.fields.get("layer", entity.fields.get("attributestype"))
 
 
 def holders(ties: Sequence[Tie], kept: Callable[[Entity], bool]) -> dict[int, list[tuple[str, Entity]]]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from hearth.interop.scene_graphs.urdf_scenes import with_rooms
+
 
 def joined(data: Any) -> Any:
     """Return a scene of OmniGibson as a list of objects with their poses; any other value as it is.
@@ -18,18 +20,14 @@ def joined(data: Any) -> Any:
     )
     if not isinstance(info, Mapping) or not isinstance(registry, Mapping):
         return data
-    return {
-        "objects": [_object(str(name), _mapping(each), _mapping(registry.get(name))) for name, each in info.items()]
-    }
+    return with_rooms([_object(str(name), _mapping(each), _mapping(registry.get(name))) for name, each in info.items()])
 
 
 def _object(name: str, info: Mapping[str, Any], state: Mapping[str, Any]) -> dict[str, Any]:
     given, root = _mapping(info.get("args")), _mapping(state.get("root_link"))
     found: dict[str, Any] = {"id": name, "label": given.get("category", name)}
-    if isinstance(given.get("in_rooms"), list) and given["in_rooms"]:
-        found["room"] = given["in_rooms"][0]
-    elif isinstance(given.get("in_rooms"), str) and given["in_rooms"]:
-        found["room"] = given["in_rooms"]
+    rooms = given.get("in_rooms")
+    found["rooms"] = rooms if isinstance(rooms, list) else rooms.split(",") if isinstance(rooms, str) else []
     if root.get("pos") is not None:
         found["pose"] = {"position": root["pos"], "orientation": root.get("ori")}
     for key in ("bounding_box", "bbox_extent"):

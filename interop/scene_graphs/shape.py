@@ -29,6 +29,7 @@ class Shape:
         groups: names of lists of things.
         kinds: labels that say what kind of entry it is.
         best: names of lists of guesses about an entry, the best one first.
+        namesakes: name of a list -> class of its entries that have no label.
         edges: `source`, `target`, `relation` -> names; `lists` -> names of lists of relations.
         relations: word -> relation of ours; with `^` before it where the second thing stands in it to the first.
         flags: name of a flag -> the states of true and of false.
@@ -44,6 +45,7 @@ class Shape:
     groups: frozenset[str]
     kinds: frozenset[str]
     best: frozenset[str]
+    namesakes: Mapping[str, str]
     edges: Mapping[str, Names]
     relations: Mapping[str, str]
     flags: Mapping[str, tuple[str, str]]
@@ -64,6 +66,7 @@ def usual() -> Shape:
         groups=frozenset(data["groups"]),
         kinds=frozenset(data["kinds"]),
         best=frozenset(data["best"]),
+        namesakes=MappingProxyType(data["namesakes"]),
         edges=MappingProxyType({key: tuple(names) for key, names in data["edges"].items()}),
         relations=MappingProxyType(by_word(data["relations"])),
         flags=MappingProxyType({name: (true, false) for name, (true, false) in data["flags"].items()}),

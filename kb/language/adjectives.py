@@ -24,6 +24,19 @@ LOOKS = (
 MATERIALS = "wooden plastic metallic woolen ceramic porcelain leather cotton steel"
 COLORS = "red blue green yellow white black brown gray grey orange purple pink golden silver dark bright"
 
+OF_LABELS = (
+    "wood metal glass stone marble fabric iron bamboo wicker rattan gas electric chipped cracked worn stained striped"
+)
+"""Words that only say in labels which kind of thing it is: in sentences, some are things of their own."""
+
+SHAPES = ("round", "square")
+"""Adjectives of labels that are always apart from their noun: a `round table` of a scan is a table."""
+
+_PACKED = re.compile(
+    r"(?:carton|bottle|can|tin|box|bag|pack|packet|jar|tube|loaf|roll|stack|pile|pair|set|bunch) of (?=.)"
+)
+"""Packing before its contents: a `carton of milk` is milk."""
+
 _ADJECTIVES = "|".join(
     word for words in (SIZES, AGES, PLACES, STATES, LOOKS, MATERIALS, COLORS) for word in words.split()
 )
@@ -43,3 +56,19 @@ def without_adjective(known: Knowledge, text: str) -> Iterator[tuple[str, str]]:
         adjective, noun = found[1], found[2]
         if not is_english(adjective + noun) and not known.object_class(f"{adjective} {noun}"):
             yield text[: found.start()] + text[found.end() :], found[0].strip(" ,")
+
+
+_LABEL_WORD = re.compile(rf"({_ADJECTIVES}|{_ROOMS}|{'|'.join(OF_LABELS.split())}) (?=([a-z-]+))")
+
+
+def noun_of(label: str, known: Knowledge) -> str:
+    """Return a label such as `small wooden chair` without its adjectives and packing; "" where it has none.
+
+    As in sentences, an adjective that makes another noun of the next one stays.
+    """
+    text = left = label.lower()
+    while (found := _LABEL_WORD.match(text)) and (found[1] in SHAPES or not is_english(found[1] + found[2])):
+        text = text[found.end() :]
+        if known.object_class(text) is not None:
+            break
+    return _PACKED.sub("", text, count=1) if _PACKED.match(text) else text if text != left else ""

@@ -95,7 +95,7 @@ def test_a_thing_of_no_class_is_left_out_with_its_place():
 def test_poses_of_robots_are_turned_upright():
     table = next(node for node in read(ROBOT).graph.nodes if node.class_name == "table")
     assert table.box.center == (-2.0, 0.38, 1.0)  # x forwards, y to the left, z upwards
-    assert table.box.size == (0.8, 0.76, 1.2)
+    assert table.box.size == (1.2, 0.76, 0.8)  # its length turns with it
     assert table.yaw == pytest.approx(270.0, abs=0.1)  # a quarter to the left
 
 
