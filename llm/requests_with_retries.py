@@ -35,7 +35,7 @@ REMEDIES = {
     "401": _KEY,
     "403": _KEY,
 }
-"""What to do about the reason of a last try; the others have a remedy by whether another try may help."""
+"""Remedies by the reason of a last try; other reasons have one by whether another try may help."""
 
 
 class Failed(Exception):  # noqa: N818 - a try, not the request
