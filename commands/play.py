@@ -68,9 +68,7 @@ def play(
       hearth replay episode.jsonl
     """
     seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
-    quiet = any(seat.spec == STDIO for seat in seats)
-    if quiet and (as_json or any(seat.spec == TEXT for seat in seats)):
-        raise typer.BadParameter("`stdio` has the standard output to itself: leave out --json and `text`")
+    quiet = _is_quiet(seats, as_json)
     if form not in FORMS:
         raise typer.BadParameter(f"`{form[:60]}` is not a form: {', '.join(FORMS)}")
     asked = _asked(models, seats, out, within, images)
@@ -140,6 +138,18 @@ def _seats(given: list[str]) -> list[_Seat]:
         if list(found.values()).count(one) > 1:
             raise typer.BadParameter(f"there is one terminal: only one agent can be `{one}`")
     return [_Seat(number, found.get(number, WAIT)) for number in range(max(found, default=0) + 1)]
+
+
+def _is_quiet(seats: list[_Seat], as_json: bool) -> bool:
+    """Return whether an agent has the standard output to itself.
+
+    Raises:
+        typer.BadParameter: it has, and something else is to be printed there.
+    """
+    specs = {seat.spec for seat in seats}
+    if STDIO in specs and (as_json or TEXT in specs):
+        raise typer.BadParameter("`stdio` has the standard output to itself: leave out --json and `text`")
+    return STDIO in specs
 
 
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
