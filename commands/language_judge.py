@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from hearth.commands import output
+from hearth.commands.shared_options import LanguageOptions
 
 
 def judge(
@@ -13,10 +14,7 @@ def judge(
     out: Path,
     limit: int | None = None,
     constrained: bool = False,
-    llm: list[str] | None = None,
-    cache: Path | None = None,
-    prices: str = "",
-    budget: float | None = None,
+    models: LanguageOptions = LanguageOptions(),
     as_json: bool = False,
 ) -> None:
     """Let a language model judge episodes or programs, and print how far it agrees with the engine.
@@ -31,13 +29,12 @@ def judge(
       hearth llm judge llm:MODEL@URL predicted.jsonl --dataset data_out --constrained --out judged.jsonl
     """
     from hearth.analysis.judge_agreement import agreement, episode_cases, program_cases
-    from hearth.commands.language_predictions import asked_model
     from hearth.commands.progress_line import bar
     from hearth.kb.loading.load import default
     from hearth.llm.judge import Judge, judged
     from hearth.storage.chosen_files import write_rows
 
-    model = asked_model(name, out, llm, cache, prices, budget, constrained)
+    model = models.model(name, out, constrained)
     chair = Judge(model)
     cases = list(program_cases(file, dataset, limit) if dataset else episode_cases(file, default, limit))
     with bar("cases", model.spending) as seen:

@@ -1,7 +1,5 @@
 """`model predict llm:NAME`: the predictions of a language model, and their cost."""
 
-from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,26 +9,6 @@ from hearth.schemas.failures import Code
 
 if TYPE_CHECKING:
     from hearth.llm.endpoint import Endpoint
-
-
-def asked_model(
-    name: str,
-    out: Path,
-    llm: Sequence[str] | None,
-    cache: Path | None,
-    prices: str,
-    budget: float | None,
-    constrained: bool,
-) -> "Endpoint":
-    """Return the language model of a command line; errors as of `read_settings` and `Endpoint`."""
-    from hearth.llm.endpoint import endpoint_of
-    from hearth.llm.language_settings import kept_next_to, read_settings
-
-    asking, means = read_settings(llm or (), cache or kept_next_to(out, (name,)), prices, budget)
-    if asking.images:
-        message = "planners and judges read texts, and are shown no pictures"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out images")
-    return endpoint_of(name, replace(asking, constrained=asking.constrained or constrained), means)
 
 
 def predict(
@@ -65,15 +43,13 @@ def predict(
     output.status(sum(facts["unanswered"].values()), strict=True)
 
 
-def refuse_options(
-    shots: int, embed: str, llm: Sequence[str] | None, cache: Path | None, prices: str, budget: float | None
-) -> None:
+def refuse_options(*, given: bool) -> None:
     """Refuse options of language models for another model.
 
     Raises:
-        HearthError: BAD_ARGUMENT.
+        HearthError: BAD_ARGUMENT: some are given.
     """
-    if shots or embed or llm or cache or prices or budget is not None:
+    if given:
         message = "--shots, --embed, --llm, --cache, --prices and --budget are about language models"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="hearth model predict llm:MODEL@URL ...")
 

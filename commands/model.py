@@ -5,6 +5,7 @@ from pathlib import Path
 import typer
 
 from hearth.commands import language_predictions, model_tables, output
+from hearth.commands.shared_options import LanguageOptions
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 
@@ -100,10 +101,7 @@ def predict(
     limit: int | None = None,
     shots: int = 0,
     embed: str = "",
-    llm: list[str] | None = None,
-    cache: Path | None = None,
-    prices: str = "",
-    budget: float | None = None,
+    models: LanguageOptions = LanguageOptions(),
     as_json: bool = False,
 ) -> None:
     """Predict a program for each execution of a part of a dataset, into a file that `score dataset` reads.
@@ -119,10 +117,10 @@ def predict(
       hearth model predict llm:MODEL@URL data_out --shots 8 --repair --prices 0.15,0.60 --budget 2 --out p.jsonl
     """
     if model.startswith("llm:"):
-        asked = language_predictions.asked_model(model, out, llm, cache, prices, budget, constrained)
+        asked = models.model(model, out, constrained)
         language_predictions.predict(asked, dataset, out, split, part, shots, repair, originals, limit, embed, as_json)
         return
-    language_predictions.refuse_options(shots, embed, llm, cache, prices, budget)
+    language_predictions.refuse_options(given=bool(shots or embed or models.given))
     from hearth.commands.progress_line import bar
     from hearth.models.prediction_files import predict_part
 

@@ -57,7 +57,7 @@ def parameters_of(command: Callable[..., Any]) -> Iterator[Parameter]:
     for parameter in _given(command):
         group: Any = parameter.annotation
         if is_dataclass(group):
-            yield from _given(group)
+            yield from (each.replace(kind=parameter.kind) for each in _given(group))
         else:
             yield parameter
 

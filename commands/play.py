@@ -11,6 +11,7 @@ import typer
 
 from hearth.commands import output
 from hearth.commands.inputs import read_goals, read_home, read_knowledge
+from hearth.commands.shared_options import LanguageOptions
 from hearth.commands.time_limits import ANSWER_WITHIN
 from hearth.schemas.terminal import shown_line
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from hearth.agents.protocol import Agent
     from hearth.challenges.agent_channels import Channel
     from hearth.challenges.episode_loop import Played
+    from hearth.llm.language_settings import Asking, Means
     from hearth.schemas.goals import Goal
     from hearth.simulation.rules import Rules
     from hearth.simulation.world.world import World
@@ -38,6 +40,7 @@ def play(
     full: bool = False,
     messages: bool = False,
     images: bool = False,
+    models: LanguageOptions = LanguageOptions(),
     ticks: int = 250,
     within: float = ANSWER_WITHIN,
     form: str = "graph",
@@ -65,11 +68,10 @@ def play(
       hearth replay episode.jsonl
     """
     seats = _seats([*([f"0={TEXT}"] if text else []), *(agent or ())])
-    quiet = any(seat.spec == STDIO for seat in seats)
-    if quiet and (as_json or any(seat.spec == TEXT for seat in seats)):
-        raise typer.BadParameter("`stdio` has the standard output to itself: leave out --json and `text`")
+    quiet = _is_quiet(seats, as_json)
     if form not in FORMS:
         raise typer.BadParameter(f"`{form[:60]}` is not a form: {', '.join(FORMS)}")
+    asked = _asked(models, seats, out, within, images)
     known = read_knowledge(kb)
     scene = (
         _task_scene(task, home, goal, known) if task else _home_scene(home, goal, graph, homes, known, len(seats), seed)
@@ -77,7 +79,7 @@ def play(
     if scene.instruction and not quiet:
         output.note(f"{task}: {scene.instruction}")
     with ExitStack() as stack:
-        how = _How(ticks, within, form, messages, images, as_json, _transcript(transcript, stack), scene.instruction)
+        how = _How(ticks, within, form, messages, asked, as_json, _transcript(transcript, stack), scene.instruction)
         playing = [_agent(seat, how, stack) for seat in seats]
         played = _play(scene, playing, seed, how, _actions(actions or scene.actions, known), not full)
         for each in playing:
@@ -104,7 +106,7 @@ class _How(NamedTuple):
     within: float
     form: str
     messages: bool
-    images: bool
+    asked: tuple[Asking, Means] | None
     as_json: bool
     keep: Callable[[Mapping[str, Any]], None]
     instruction: str = ""
@@ -138,6 +140,18 @@ def _seats(given: list[str]) -> list[_Seat]:
     return [_Seat(number, found.get(number, WAIT)) for number in range(max(found, default=0) + 1)]
 
 
+def _is_quiet(seats: list[_Seat], as_json: bool) -> bool:
+    """Return whether an agent has the standard output to itself.
+
+    Raises:
+        typer.BadParameter: it has, and something else is to be printed there.
+    """
+    specs = {seat.spec for seat in seats}
+    if STDIO in specs and (as_json or TEXT in specs):
+        raise typer.BadParameter("`stdio` has the standard output to itself: leave out --json and `text`")
+    return STDIO in specs
+
+
 def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
     from hearth.challenges.wire_protocol import WireAgent
     from hearth.envs.terminal_agent import TerminalAgent
@@ -151,15 +165,33 @@ def _agent(seat: _Seat, how: _How, stack: ExitStack) -> Agent:
     return WireAgent(_channel(seat, how, stack), how.within, FORMS[how.form], how.ticks, how.keep, how.messages)
 
 
+def _asked(
+    models: LanguageOptions, seats: list[_Seat], out: Path | None, within: float, images: bool
+) -> tuple[Asking, Means] | None:
+    """Return what language models are asked, and the means; None where none plays. A request may take `within`."""
+    from dataclasses import replace
+
+    from hearth.challenges.language_agents import need_models
+
+    names = [seat.spec for seat in seats if seat.spec.startswith(MODEL)]
+    need_models(names, "local", given=models.given or images)
+    if not names:
+        return None
+    asking, means = models.settings(out, names, *(["images"] if images else ()))
+    its_own = any(each.startswith("seconds=") for each in models.llm or ())
+    return asking, means if its_own else replace(means, seconds=within)
+
+
 def _model(seat: _Seat, how: _How) -> Agent:
-    """Return an agent that a language model decides for, with the usual settings: the first acts, the second helps."""
+    """Return an agent that a language model decides for: the first acts, the second helps."""
     from hearth.challenges.language_agents import need_model, player_of
-    from hearth.llm.language_settings import Asking, Means
 
     if seat.number > 1:
         raise typer.BadParameter(f"agent {seat.number} is a language model; only agents 0 and 1 can be")
     need_model(seat.spec)
-    return player_of(seat.spec, Asking(images=how.images), Means(seconds=how.within), "", how.messages, seat.number)
+    assert how.asked is not None
+    instruction = "" if seat.number else how.instruction
+    return player_of(seat.spec, *how.asked, instruction, how.messages, seat.number)
 
 
 class Waiting:

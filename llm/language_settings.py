@@ -126,18 +126,27 @@ def kept_next_to(out: Path, names: Sequence[str]) -> Path | None:
 def _value(name: str, value: str, kinds: dict[str, type]) -> Any:
     """Return the value of a setting by its type; errors as of `read_settings`."""
     kind = kinds.get(name)
+    if kind is None:
+        message = f"`{name[:40]}` is not a setting of language models"
+        remedy = f"--llm takes {', '.join(f'{each}=...' for each in kinds)}"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy)
     try:
-        if kind is None:
-            raise ValueError
         found = TRUTHS[value.lower()] if kind is bool else kind(value)
         least, most = BOUNDS.get(name, (found, found))
         if not least <= found <= most:
             raise ValueError
     except (ValueError, KeyError):
-        message = f"`{name[:40]}={value[:40]}` is not a setting of language models"
-        remedy = f"--llm takes {', '.join(f'{each}=...' for each in kinds)}"
-        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=remedy) from None
+        message = f"`{value[:40]}` is no value of the setting `{name}` of language models"
+        raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion=_values(name, kind)) from None
     return found
+
+
+def _values(name: str, kind: type) -> str:
+    """Return which values a setting takes, for a message."""
+    if kind is bool:
+        return f"{name}=yes or {name}=no"
+    least, most = BOUNDS[name]
+    return f"a {'whole ' if kind is int else ''}number from {least:,} to {most:,}"
 
 
 def _prices(text: str) -> tuple[float, float] | None:

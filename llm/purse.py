@@ -39,7 +39,9 @@ class Purse:
         price, budget = self._means.cost(tokens_in, tokens_out), self._means.budget
         with self._lock:
             if budget is not None and self._spent + self._held + price > budget:
-                message = f"{self._spent:.4f} of the budget of {budget:g} are spent, and a reply may cost {price:.4f}"
+                aside = f", {self._held:.4f} kept for replies under way" if self._held else ""
+                spent = f"{self._spent:.4f} of the budget of {budget:g} are spent{aside}"
+                message = f"{spent}, and a reply may cost {price:.4f}"
                 remedy = "the same command with a greater --budget goes on; nothing is asked twice"
                 raise HearthError.of(Code.OVER_BUDGET, message, suggestion=remedy)
             self._held += price

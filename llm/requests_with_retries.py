@@ -28,6 +28,16 @@ MOST_SHOWN = 200
 """Characters of a server's own words in a message."""
 
 
+_KEY = "set HEARTH_LLM_KEY to a key that the server takes"
+
+REMEDIES = {
+    "ConnectError": "start the server (`hearth llm serve` for one on this machine), or correct its address",
+    "401": _KEY,
+    "403": _KEY,
+}
+"""Remedies by the reason of a last try; other reasons have one by whether another try may help."""
+
+
 class Failed(Exception):  # noqa: N818 - a try, not the request
     """A try that brought no reply.
 
@@ -84,7 +94,8 @@ def _gave_up(error: Failed, tries: int, where: str, pause: float) -> HearthError
     said = f": {printable(error.said)[:MOST_SHOWN]}" if error.said else ""
     times = f" after {tries} tries" if tries > 1 else ""
     long = f"; it asks to wait {pause:.0f} s" if error.again and pause > LONGEST_WAIT else ""
-    remedy = "the same command goes on from here" if error.again else "see what the server says"
+    usual = "the same command goes on from here" if error.again else "see what the server says"
+    remedy = REMEDIES.get(error.reason, usual)
     return HearthError.of(
         Code.NO_ANSWER, f"{where} gave no reply{times} ({error.reason}){said}{long}", suggestion=remedy
     )

@@ -1,4 +1,4 @@
-"""The page of licences, `docs/licences.md`: what pip-licenses finds in an environment that has both locks.
+"""The page of licences, `docs/licences.md`: what pip-licenses finds in an environment that has all locks.
 
 python docs/hooks/licences.py PIP_LICENSES      # `make licences` makes the environment, and calls it
 """
@@ -14,7 +14,11 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs/licences.md"
-LOCKS = {"requirements.lock": "Hearth with its extras and its tests", "requirements-tools.lock": "`make test-tools`"}
+LOCKS = {
+    "requirements.lock": "Hearth with its extras and its tests",
+    "requirements-tools.lock": "`make test-tools`",
+    "requirements-transformers.lock": "The server of transformers that `make test-tools` asks",
+}
 
 ABOUT = """\
 # Licences of libraries

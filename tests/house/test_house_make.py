@@ -348,16 +348,16 @@ def test_every_library_of_the_locks_has_a_line_on_the_page_of_licences(module):
     for lock in made.LOCKS:
         names = made.locked(lock)
         lost = [name for name in names if not re.search(rf"^\| {re.escape(name)} \| \S", text, re.M)]
-        assert len(names) > 50 and not lost, "write it with: make licences"
+        assert len(names) > 40 and not lost, "write it with: make licences"
 
 
-@pytest.mark.parametrize("file", ["requirements.lock", "requirements-tools.lock"])
+@pytest.mark.parametrize("file", ["requirements.lock", "requirements-tools.lock", "requirements-transformers.lock"])
 def test_the_lock_pins_everything_with_hashes_and_says_nothing_of_where_it_came_from(file):
     text = (ROOT / file).read_text()
     assert "://" not in text and "@" not in text
     pins = text.replace("\\\n", "").splitlines()
     pins = [line for line in pins if not line.startswith("#")]
-    assert len(pins) > 50
+    assert len(pins) > 40
     for line in pins:
         found = re.fullmatch(r"[\w.\[\]-]+==[\w.!+]+(?: ; [^-]+?)?((?: +--hash=sha256:[0-9a-f]{64})+) *", line)
         assert found, line[:80]

@@ -16,6 +16,7 @@ from hearth import Endpoint
 from hearth.llm.addresses import LOCAL, is_here
 from hearth.llm.answer_cache import AnswerCache
 from hearth.llm.language_settings import Asking, Means
+from hearth.llm.purse import Purse
 from hearth.llm.timed_connections import stopped
 from hearth.schemas.diagnostics import HearthError
 
@@ -173,8 +174,23 @@ def test_a_server_of_this_machine_is_asked_without_a_proxy(asked, monkeypatch):
 def test_nobody_listens(asked):
     with serving("wait") as (url, _):
         pass
-    with pytest.raises(HearthError, match=r"NO_ANSWER.*ConnectError"):
+    with pytest.raises(HearthError, match=r"NO_ANSWER.*ConnectError") as raised:
         asked(url, tries=2).ask(HELLO)
+    assert "hearth llm serve" in raised.value.diagnostics[0].suggestion
+
+
+@pytest.mark.parametrize("status", [401, 403])
+def test_a_key_that_is_refused_is_named_by_its_variable(asked, status):
+    with serving(status) as (url, _), pytest.raises(HearthError, match=str(status)) as raised:
+        asked(url).ask(HELLO)
+    assert "HEARTH_LLM_KEY" in raised.value.diagnostics[0].suggestion
+
+
+def test_a_budget_names_what_is_kept_for_replies_under_way():
+    purse = Purse(Means(prices=(0.0, 1e6), budget=2.0))
+    said = r"0\.0000 .* spent, 1\.0000 kept .*, .* cost 2\.0000"
+    with purse.holding(0, 1), pytest.raises(HearthError, match=said), purse.holding(0, 2):
+        pass
 
 
 def test_redirections_are_not_followed(asked):

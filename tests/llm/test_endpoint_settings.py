@@ -110,6 +110,8 @@ def test_settings():
     ):
         with pytest.raises(HearthError, match="BAD_ARGUMENT"):
             read_settings([wrong])
+    with pytest.raises(HearthError, match=r"`one` is no value of the setting `memory`.*whole number from 0 to 10,000"):
+        read_settings(["memory=one"])
     for prices in ("1", "1,2,3", "a,b", "-1,2", "nan,1", "inf,1"):
         with pytest.raises(HearthError, match="BAD_ARGUMENT"):
             read_settings([], prices=prices)

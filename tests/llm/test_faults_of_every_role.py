@@ -1,4 +1,4 @@
-"""The list of bad input, for planners, judges and vectors: each fault is typed, nothing is lost, keys are nowhere."""
+"""The list of bad input, for every role: each fault is typed, nothing is lost, keys are nowhere."""
 
 from __future__ import annotations
 
@@ -9,6 +9,12 @@ from lying_server import dripping, endless, gone, half, raw, reply, serving, sil
 from typer.testing import CliRunner
 
 from hearth import cli
+from hearth.challenges.episode_agents import Lineup
+from hearth.challenges.result_files import read
+from hearth.challenges.suite_runs import run
+from hearth.challenges.task_files import suite
+from hearth.challenges.verification import verify
+from hearth.kb.loading.load import default
 from hearth.llm.embeddings import EndpointVectors
 from hearth.llm.endpoint import Endpoint
 from hearth.llm.judge import Case, Judge
@@ -86,6 +92,39 @@ def test_a_fault_is_typed_and_the_rest_is_kept(role, fault, tmp_path, knowledge)
         before = len(server.asked)
         assert ROLES[role](model_at(url, means), knowledge) == ([True] * 3, [])
         assert {asked_of(body) for body in server.asked[before:]} <= {1, 2} - ({2} if role != "vectors" else set())
+
+
+@pytest.fixture(scope="module")
+def played():
+    """A task for a model that acts, and one for a model that helps."""
+    return {"actor": suite("household", "valid_seen", limit=1), "helper": suite("owah", "test", limit=1)}
+
+
+@pytest.mark.parametrize("role", ["actor", "helper"])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_an_episode_that_meets_a_fault_ends_with_its_code_and_the_same_command_goes_on(role, fault, tmp_path, played):
+    """The second of three requests meets the fault; the same again asks from there."""
+    out, spoilt, asking = tmp_path / "x.jsonl", [True], Asking(most_turns=3)
+    means = Means(cache=tmp_path / "c", tries=1, seconds=2.0)
+
+    def answer(body):
+        asked[0] += 1
+        return FAULTS[fault] if spoilt[0] and asked[0] == 2 else "wait"
+
+    asked = [0]
+    with serving(answer) as (url, _):
+        name = f"llm:mini@{url}"
+        which = (name,) if role == "actor" else ("human_like", name, "none")
+        found = list(run(played[role], Lineup(*which, asking=asking, means=means), 1, out, default).records)
+        assert found[-1].end["code"] == "NO_ANSWER" and len(found[-1].language[SEATS[role]]["turns"]) == 1
+        assert verify(read(out), "x", default) == []
+        spoilt[0] = False
+        found = list(run(played[role], Lineup(*which, asking=asking, means=means), 1, out, default).records)
+        assert found[-1].end is None and len(found[-1].language[SEATS[role]]["turns"]) == 3
+    assert asked[0] == 4 and verify(read(out), "x", default) == []
+
+
+SEATS = {"actor": "0", "helper": "1"}
 
 
 def model_at(url, means):

@@ -14,6 +14,7 @@ import hearth
 from hearth import cli
 from hearth.challenges.episode_agents import Lineup
 from hearth.challenges.episode_loop import Player, play
+from hearth.challenges.household import household_task
 from hearth.challenges.result_files import read
 from hearth.challenges.suite_runs import run
 from hearth.challenges.task_files import suite, write
@@ -217,6 +218,32 @@ def test_a_model_plays_in_a_home():
         third = CliRunner().invoke(cli.app, [*words[:4], "--agent", f"2=llm:mini@{url}"])
     assert found["reached"] and [fault["code"] for fault in found["agents"][0]["faults"]] == ["UNKNOWN_ACTION"]
     assert third.exit_code == 2 and "only agents 0 and 1" in third.output
+
+
+def test_settings_prices_and_a_budget_hold_in_play(tmp_path):
+    """A reply costs 0.2: three are paid, and the same command with a greater budget asks only for the rest."""
+    words = ["play", "maple", "--goal", "HOLDS(agent, milk)", "--ticks", "6", "--out", str(tmp_path / "e.jsonl")]
+    words += ["--llm", "most_tokens=2", "--prices", "0,100000"]
+    with serving(reply("wait", tokens=(5, 2))) as (url, server):
+        least = CliRunner().invoke(cli.app, [*words, "--agent", f"0=llm:mini@{url}", "--budget", "0.7"])
+        assert least.exit_code == 1 and "OVER_BUDGET" in least.output and len(server.asked) == 3
+        more = CliRunner().invoke(cli.app, [*words, "--agent", f"0=llm:mini@{url}", "--budget", "9"])
+    assert more.exit_code == 1 and "not reached after 6 ticks" in more.output
+    assert [body["max_tokens"] for body in server.asked] == [2] * 6
+    assert (tmp_path / "e.jsonl.replies.sqlite").exists()
+
+
+def test_a_model_that_plays_a_task_reads_its_instruction():
+    words = ["play", "--task", "household-train-00001", "--ticks", "1"]
+    with serving("wait") as (url, server):
+        CliRunner().invoke(cli.app, [*words, "--agent", f"0=llm:mini@{url}"])
+    assert household_task("household-train-00001").instruction in str(server.asked[0]["messages"])
+
+
+@pytest.mark.parametrize("options", [["--llm", "memory=3"], ["--images"], ["--prices", "1,2"], ["--cache", "c"]])
+def test_options_of_language_models_need_one_in_play(options):
+    result = CliRunner().invoke(cli.app, ["play", "maple", "--goal", "HOLDS(agent, milk)", *options])
+    assert result.exit_code == 1 and "no agent is one" in result.output
 
 
 def test_options_of_language_models_need_one(tasks, tmp_path):
