@@ -24,6 +24,7 @@ from starlette.websockets import WebSocket
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.spoken_words import spoken
 from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
@@ -127,6 +128,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         lstrip_blocks=True,
     )
     made.globals.update(say=say_in_page, refused=refused, room_title=room_title, language=language, direction=direction)
+    made.globals["spoken"] = spoken
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made

@@ -82,6 +82,7 @@ class Room:
         desk: the addresses for researchers, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
+        own: the address of the page on which people see what they did here; "" where there is none.
         opens: writes the files that follow from the store, when a server starts and after a deletion.
         keeps: gives what others built on to nobody when its person withdraws; the rest goes with the session.
     """
@@ -93,5 +94,6 @@ class Room:
     desk: tuple[Address, ...] = ()
     needs: tuple[str, ...] = ()
     listed: bool = True
+    own: str = ""
     opens: Callable[[Web], None] = _nothing
     keeps: Keeps = _keeps_nothing

@@ -27,7 +27,8 @@ MINUTES_TO_COME = 10
 
 def _start(visit: Visit) -> Response:
     lacking = {name: THIRD_PARTY[name].purpose for name in missing()}
-    return visit.page("start.html", lacking=lacking, remedy=REMEDY)
+    deleted = visit.session is None and visit.fields.get("deleted") == "yes"
+    return visit.page("start.html", lacking=lacking, remedy=REMEDY, deleted=deleted)
 
 
 def _begin(visit: Visit) -> Response:
@@ -80,8 +81,9 @@ def _delete(visit: Visit) -> Response:
     """Delete a session with all that belongs to it, as its person asked, except works on which others built."""
     sessions.withdraw(visit.web.store, visit.person, visit.web.keeps)
     visit.web.written()
-    answer = visit.go("/")
+    answer = visit.go("/?deleted=yes")
     answer.delete_cookie(sessions.COOKIE)
+    answer.headers["Clear-Site-Data"] = '"storage"'  # what a page kept of an unfinished text goes, too
     return answer
 
 
