@@ -77,8 +77,9 @@ def application(
     """
     templates = _templates(rooms)
     rates, follows = rates or usual_rates(), tuple(room.opens for room in rooms)
-    keeps = tuple(room.keeps for room in rooms)
-    web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows, keeps)
+    keeps, studied = tuple(room.keeps for room in rooms), tuple(room.studied for room in rooms)
+    common = (store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films)
+    web = Web(*common, follows, keeps, studied)
     web.written()
     routes: list[BaseRoute] = [_route(web, address) for address in start_pages.ADDRESSES]
     for room in rooms:

@@ -70,6 +70,11 @@ def _keeps_nothing(connection: sql.Connection, person: str, nobody: str) -> int:
     return 0
 
 
+def _has_no_study(web: Web, person: str) -> bool:
+    """Return that nobody takes part in a study of a room, as most rooms have none."""
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Room:
     """A room.
@@ -85,6 +90,7 @@ class Room:
         own: the address of the page on which people see what they did here; "" where there is none.
         opens: writes the files that follow from the store, when a server starts and after a deletion.
         keeps: gives what others built on to nobody when its person withdraws; the rest goes with the session.
+        studied: whether a person takes part in a study, which the page of the session is to say.
     """
 
     name: str
@@ -97,3 +103,4 @@ class Room:
     own: str = ""
     opens: Callable[[Web], None] = _nothing
     keeps: Keeps = _keeps_nothing
+    studied: Callable[[Web, str], bool] = _has_no_study

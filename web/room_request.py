@@ -38,6 +38,7 @@ class Web:
         films: a dataset whose films people describe, or None.
         follows: write the files of rooms, which follow from the store.
         keeps: give to nobody what others built on, when a person withdraws.
+        studied: say whether a person takes part in a study.
     """
 
     store: Store
@@ -51,6 +52,7 @@ class Web:
     films: Path | None = None
     follows: tuple[Callable[[Web], None], ...] = ()
     keeps: tuple[Keeps, ...] = ()
+    studied: tuple[Callable[[Web, str], bool], ...] = ()
 
     def written(self) -> None:
         """Write the rooms' files anew, once data that they follow from was deleted."""

@@ -74,7 +74,8 @@ def _came(visit: Visit) -> Response:
 
 def _mine(visit: Visit) -> Response:
     assert visit.session is not None
-    return visit.page("mine.html", link=f"{base_of(visit)}{COME}/{visit.session.token}")
+    studied = any(takes_part(visit.web, visit.person) for takes_part in visit.web.studied)
+    return visit.page("mine.html", link=f"{base_of(visit)}{COME}/{visit.session.token}", studied=studied)
 
 
 def _delete(visit: Visit) -> Response:

@@ -96,7 +96,8 @@ def _scene_page(visit: Visit, draft: Draft, status: int, fault: str, wanted: str
     if not draft.rooms and not draft.props and text["scene"].replace(" ", "_") in visit.web.known.rooms:
         draft = draft.with_scene({text["scene"].replace(" ", "_"): 1}, {})  # where the activity begins
     values: dict[str, Any] = {"rooms": visit.web.known.rooms, "names": sorted(_by_words(visit.web.known)),
-                              "draft": draft, "version": program["version"], "fault": fault, "wanted": wanted, "closed": program["state"] not in annotated_programs.CHANGED}  # fmt: skip
+                              "draft": draft, "version": program["version"], "fault": fault, "wanted": wanted,
+                              "closed": program["state"] not in annotated_programs.CHANGED}  # fmt: skip
     return visit.page("annotate/scene.html", status, text=text, **values)
 
 
