@@ -10,7 +10,7 @@ from hearth.web.phrases import language, script
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.security import own_address, scheme_of
-from hearth.web.sender_addresses import sender_of
+from hearth.web.sender_addresses import is_of_lab, sender_of
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.web_errors import WebError
 
@@ -33,7 +33,7 @@ def _start(visit: Visit) -> Response:
 
 def _begin(visit: Visit) -> Response:
     """Start a session, unless there is one, and go on to where the person wanted to go."""
-    if visit.session is None:
+    if visit.session is None and not is_of_lab(_sender(visit), visit.web.lab):
         visit.web.rates["begin"].check(_sender(visit), "/begin")
     session = visit.session or sessions.start(visit.web.store)
     wanted = visit.field("to", 1_000)

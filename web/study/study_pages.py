@@ -34,7 +34,7 @@ from hearth.studies.study_progress import (
 from hearth.web import play
 from hearth.web.phrases import say
 from hearth.web.room_request import Visit, Web, by_browser
-from hearth.web.sender_addresses import sender_of
+from hearth.web.sender_addresses import is_of_lab, sender_of
 from hearth.web.study.expected_posts import UNASKED, check_answers, in_turn, unasked_line
 from hearth.web.study.places_per_address import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
@@ -217,7 +217,8 @@ def _joined(visit: Visit, conduct: Conduct) -> Standing:
         WebError: TOO_FAST: others of the same address hold as many places as it may.
     """
     address = sender_of(visit.request)
-    if _standing(conduct, visit.person) is not None or not is_stranger(address, visit.web.secure):
+    known = is_of_lab(address, visit.web.lab) or not is_stranger(address, visit.web.secure)
+    if known or _standing(conduct, visit.person) is not None:
         return conduct.join(visit.person)
 
     def under_way(person: str) -> bool:
