@@ -1,10 +1,10 @@
 // The page on which a program is written: one list of steps, shown as blocks and as a list with a form.
 import PHRASES from "/phrases.js";
 import { mount } from "./blocks.js";
+import { byId, element, mark, phrased, tool } from "./pieces.js";
 import { player } from "./player.js";
 
 const [SAVE_AFTER, AGAIN] = [250, 1000];
-const byId = (id) => document.getElementById(id);
 const composer = byId("composer");
 const base = composer.dataset.base;
 
@@ -16,15 +16,6 @@ let saving = Promise.resolve();
 let changing = -1; // the number of the step that the form changes, or -1
 const past = []; // steps before each change, for Undo
 const ahead = []; // steps that were undone, for Redo
-
-const phrased = (name, values = {}) => PHRASES.annotate[name].replace(/\{(\w+)\}/g, (_, key) => values[key] ?? "");
-
-function element(name, text, className) {
-  const made = document.createElement(name);
-  if (text !== undefined && text !== null) made.textContent = text;
-  if (className) made.className = className;
-  return made;
-}
 
 async function ask(path, body) {
   const options = body === undefined ? {} : {
@@ -158,21 +149,6 @@ function checked(found) {
 }
 
 // ------------------------------------------------------------------ the list
-
-function mark(each) {
-  const shown = element("span", each.remedy ? `${each.message}: ${each.remedy}` : each.message, each.fault ? "fault" : "note");
-  shown.dataset.code = each.code;
-  return shown;
-}
-
-function tool(text, label, work, disabled) {
-  const button = element("button", text, "plain tool");
-  button.type = "button";
-  button.ariaLabel = label;
-  button.disabled = Boolean(disabled);
-  button.addEventListener("click", work);
-  return button;
-}
 
 function moved(from, to) {
   const steps = [...model.steps];
