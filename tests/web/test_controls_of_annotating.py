@@ -204,7 +204,6 @@ def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, ser
     go(page, page.locator("main").get_by_role("link", name="another description"))
     page.goto(f"{served.address}/annotate/")
     go(page, link(page, "Your work"))
-    seen(page)
     go(page, page.get_by_role("link", name="Look at it"))
     go(page, link(page, "Your work"))
     go(page, button(page, "Take it back, to change it"))
@@ -216,7 +215,7 @@ def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, ser
         page.goto(f"{served.address}/annotate/mine")
         press(page, page.locator("summary").first)
         go(page, button(page, "Delete it"))
-    assert "You have handed in nothing yet." in page.inner_text("main")
+    seen(page)
 
 
 def test_a_program_is_reviewed_marked_and_graded(page, served):

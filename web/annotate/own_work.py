@@ -1,4 +1,4 @@
-"""What a person has handed in: seen, taken back to be changed, and withdrawn piece by piece."""
+"""A person's own work: seen, taken back to be changed, and withdrawn piece by piece."""
 
 import sqlalchemy as sql
 from starlette.responses import Response

@@ -49,7 +49,7 @@ TEMPLATES = {
 
 
 CAME = "hearth_came"
-"""The cookie with what the link of a platform said, until the browser is closed."""
+"""The cookie with the ids of a platform's link; it goes when the browser is closed."""
 
 ANSWER = "answer-"
 """Beginning of an answer's field; the name of its question follows."""
