@@ -161,7 +161,7 @@ def shown(
         return _consent_page(visit, conduct, note)
     helped = standing.stage in (TRIAL, QUESTIONS) and conduct.condition(standing).helped
     has_begun = standing.stage in (PRACTICE, TRIAL) and is_begun(visit.web, conduct, standing)
-    values |= {"questions": conduct.questions(standing), "helped": helped, "begun": has_begun}
+    values |= {"questions": conduct.questions(standing), "helped": helped, "started": has_begun}
     return visit.page(TEMPLATES[standing.stage], status, **values)
 
 
