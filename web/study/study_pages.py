@@ -109,7 +109,7 @@ def _consent_page(visit: Visit, conduct: Conduct, note: str) -> Response:
         note, came = say("study", "link_damaged", platform=study.recruitment.title), {}
     if not note and came and study.recruitment is not None:
         person = came[study.recruitment.parameters[0]]
-        note = say("study", "elsewhere") if _has_come(conduct, person, visit.person) else ""
+        note = say("study", "same_link") if _has_come(conduct, person, visit.person) else ""
     answer = visit.page("study/consent.html", study=study, note=note, came=came)
     if came:
         answer.set_cookie(CAME, urlencode(came), httponly=True, samesite="lax", secure=visit.web.secure, path="/study")
