@@ -3,7 +3,7 @@
 import re
 import sys
 from collections.abc import Mapping
-from ipaddress import ip_address
+from ipaddress import IPv4Network, IPv6Network, ip_address, ip_network
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -26,6 +26,7 @@ def serve(
     public: str = "",
     proxy: str = "",
     host: str = "127.0.0.1",
+    lab: str = "",
     text: bool = False,
     tasks: str = "wah:train",
     limit: int = 250,
@@ -60,8 +61,8 @@ def serve(
       hearth serve --text --tasks wah:train
       hearth serve --virtualhome --out recordings
     """
-    _check_kind(virtualhome, {"--store": store, "--study": study, "--films": films, "--public": public,
-                              "--proxy": proxy, "--text": text}, {"--homes": homes, "--seed": seed})  # fmt: skip
+    rooms = {"--store": store, "--study": study, "--films": films, "--public": public, "--proxy": proxy, "--lab": lab}
+    _check_kind(virtualhome, {**rooms, "--text": text}, {"--homes": homes, "--seed": seed})
     if virtualhome:
         port = VIRTUALHOME_PORT if port is None else port
         serve_virtualhome(port, out or Path("recordings"), homes, kb, seed, as_json)
@@ -71,10 +72,10 @@ def serve(
     proxy, hosts, host = proxy_of(proxy, public), public_hosts(public), host_of(host, public)
     at, out = (host, ROOMS_PORT if port is None else port), out or Path("collected")
     if text:
-        _refuse_options_of_rooms(store, study, films)
+        _refuse_options_of_rooms(store, study, films, lab)
         _serve_text(at, out, hosts, proxy, (tasks, limit, worlds, workers), as_json)
         return
-    _serve_rooms(at, out, store, (study, films), (public, hosts, proxy), kb, as_json)
+    _serve_rooms(at, out, store, (study, films), (public, hosts, proxy, lab_of(lab)), kb, as_json)
 
 
 def _serve_rooms(
@@ -82,7 +83,7 @@ def _serve_rooms(
     out: Path,
     store: str,
     files: tuple[Path | None, Path | None],
-    by: tuple[str, tuple[str, ...], str],
+    by: tuple[str, tuple[str, ...], str, IPv4Network | IPv6Network | None],
     kb: Path | None,
     as_json: bool,
 ) -> None:
@@ -96,7 +97,7 @@ def _serve_rooms(
     from hearth.web.study.study_store import has_begun
     from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 
-    (study, films), (public, hosts, proxy), (host, port) = files, by, at
+    (study, films), (public, hosts, proxy, lab), (host, port) = files, by, at
     conduct = None if study is None else named(str(study))
     if conduct is not None:
         check_helpers(conduct)
@@ -104,7 +105,7 @@ def _serve_rooms(
     address = _address(host, where.getsockname()[1])
     token = desk_token(out)
     kept = Store(store or default_url(out))
-    app = application(kept, read_knowledge(kb), out, token, study, films, hosts)
+    app = application(kept, read_knowledge(kb), out, token, study, films, hosts, lab=lab)
     if conduct is not None:
         has_begun(kept, conduct)
     for name in missing():
@@ -114,6 +115,19 @@ def _serve_rooms(
     output.say(lines, {"address": address, "desk": desk, "out": str(out), "missing": missing()}, as_json)
     sys.stdout.flush()
     run(app, where, proxy)
+
+
+def lab_of(text: str) -> IPv4Network | IPv6Network | None:
+    """Return the network behind which many participants sit; None where none is given.
+
+    Raises:
+        typer.BadParameter: it is neither an address nor a network.
+    """
+    try:
+        return ip_network(text) if text else None
+    except ValueError:
+        message = f"`{text[:60]}` is not an IP address or a network, such as 10.1.0.0/16"
+        raise typer.BadParameter(message, param_hint="--lab") from None
 
 
 def _check_kind(virtualhome: bool, of_rooms: Mapping[str, object], of_unity: Mapping[str, object]) -> None:
@@ -139,7 +153,7 @@ def _address(host: str, port: int) -> str:
 def _refuse_options_of_rooms(*given: object) -> None:
     """Refuse options of the rooms, which `--text` does not open."""
     if any(given):
-        message = "--store, --study and --films are of the rooms for people"
+        message = "--store, --study, --films and --lab are of the rooms for people"
         raise HearthError.of(Code.BAD_ARGUMENT, message, suggestion="leave out --text, or these")
 
 

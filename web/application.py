@@ -24,6 +24,7 @@ from starlette.websockets import WebSocket
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
+from hearth.schemas.spoken_words import spoken
 from hearth.web import deadlines, desk_access, sessions, start_pages
 from hearth.web.errors_as_faults import fault_of
 from hearth.web.handler_threads import DESK_WITHIN, WITHIN, in_thread
@@ -36,7 +37,7 @@ from hearth.web.room import Address, Room, Who
 from hearth.web.room_registry import ROOMS
 from hearth.web.room_request import Visit, Web, by_browser, json_answer, render
 from hearth.web.security import Security
-from hearth.web.sender_addresses import sender_of
+from hearth.web.sender_addresses import Network, sender_of
 from hearth.web.sessions import Session
 from hearth.web.store import Store
 from hearth.web.third_party_scripts import FETCHED
@@ -60,6 +61,7 @@ def application(
     hosts: Collection[str] = (),
     rooms: Sequence[Room] = ROOMS,
     rates: Mapping[str, Rate] | None = None,
+    lab: Network | None = None,
 ) -> ASGIApp:
     """Return the server.
 
@@ -73,11 +75,13 @@ def application(
         hosts: names of a public address by which people come, over https.
         rooms: the rooms of the server.
         rates: limits on the rate of requests; the usual ones if None.
+        lab: the network behind which many participants sit, whom limits by address do not count.
     """
     templates = _templates(rooms)
     rates, follows = rates or usual_rates(), tuple(room.opens for room in rooms)
-    keeps = tuple(room.keeps for room in rooms)
-    web = Web(store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films, follows, keeps)
+    keeps, studied = tuple(room.keeps for room in rooms), tuple(room.studied for room in rooms)
+    common = (store, known, out, templates, sessions.digest(desk), rates, study, bool(hosts), films)
+    web = Web(*common, follows, keeps, studied, lab)
     web.written()
     routes: list[BaseRoute] = [_route(web, address) for address in start_pages.ADDRESSES]
     for room in rooms:
@@ -127,6 +131,7 @@ def _templates(rooms: Sequence[Room]) -> jinja2.Environment:
         lstrip_blocks=True,
     )
     made.globals.update(say=say_in_page, refused=refused, room_title=room_title, language=language, direction=direction)
+    made.globals["spoken"] = spoken
     made.globals["all_rooms"] = [room for room in rooms if room.listed]
     made.globals["desks"] = [room for room in rooms if room.desk]
     return made

@@ -70,6 +70,11 @@ def _keeps_nothing(connection: sql.Connection, person: str, nobody: str) -> int:
     return 0
 
 
+def _has_no_study(web: Web, person: str) -> bool:
+    """Return that nobody takes part in a study of a room, as most rooms have none."""
+    return False
+
+
 @dataclass(frozen=True, slots=True)
 class Room:
     """A room.
@@ -82,8 +87,10 @@ class Room:
         desk: the addresses for researchers, under `/desk/NAME`.
         needs: names of `THIRD_PARTY` of `web/third_party_scripts.py` without which something of it does not work.
         listed: whether the start page and the navigation list it.
+        own: the address of the page on which people see what they did here; "" where there is none.
         opens: writes the files that follow from the store, when a server starts and after a deletion.
         keeps: gives what others built on to nobody when its person withdraws; the rest goes with the session.
+        studied: whether a person takes part in a study, which the page of the session is to say.
     """
 
     name: str
@@ -93,5 +100,7 @@ class Room:
     desk: tuple[Address, ...] = ()
     needs: tuple[str, ...] = ()
     listed: bool = True
+    own: str = ""
     opens: Callable[[Web], None] = _nothing
     keeps: Keeps = _keeps_nothing
+    studied: Callable[[Web, str], bool] = _has_no_study

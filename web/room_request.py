@@ -17,6 +17,7 @@ from hearth.schemas.failures import Code
 from hearth.schemas.terminal import without_controls
 from hearth.web.limits import Rate
 from hearth.web.messages import json_object
+from hearth.web.sender_addresses import Network
 from hearth.web.sessions import Keeps, Session
 from hearth.web.store import Store
 from hearth.web.web_errors import WebError
@@ -38,6 +39,8 @@ class Web:
         films: a dataset whose films people describe, or None.
         follows: write the files of rooms, which follow from the store.
         keeps: give to nobody what others built on, when a person withdraws.
+        lab: the network behind which many participants sit, whom limits by address do not count; None for none.
+        studied: say whether a person takes part in a study.
     """
 
     store: Store
@@ -51,6 +54,8 @@ class Web:
     films: Path | None = None
     follows: tuple[Callable[[Web], None], ...] = ()
     keeps: tuple[Keeps, ...] = ()
+    studied: tuple[Callable[[Web, str], bool], ...] = ()
+    lab: Network | None = None
 
     def written(self) -> None:
         """Write the rooms' files anew, once data that they follow from was deleted."""

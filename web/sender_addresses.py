@@ -1,11 +1,14 @@
 """Addresses of senders: every spelling of one is the same sender, and a network of IPv6 is one sender."""
 
-from ipaddress import IPv4Address, IPv6Network, ip_address
+from ipaddress import IPv4Address, IPv4Network, IPv6Network, ip_address, ip_network
 
 from starlette.requests import HTTPConnection
 
 from hearth.schemas.failures import Code
 from hearth.web.web_errors import WebError
+
+Network = IPv4Network | IPv6Network
+"""A network of addresses."""
 
 ONE_SENDER = 64
 """Bits of an IPv6 address that name a network: a sender with one address of it has all."""
@@ -18,6 +21,16 @@ def sender_of(asked: HTTPConnection) -> str:
         WebError: BAD_ARGUMENT: the address that a proxy names is not one.
     """
     return one_sender(asked.client.host) if asked.client and asked.client.host else ""
+
+
+def is_of_lab(sender: str, lab: Network | None) -> bool:
+    """Return whether a sender belongs to the network behind which many participants sit."""
+    return lab is not None and bool(sender) and ip_network(sender).version == lab.version and _within(sender, lab)
+
+
+def _within(sender: str, lab: Network) -> bool:
+    found = ip_network(sender)
+    return found.subnet_of(lab) or lab.subnet_of(found)  # type: ignore[arg-type]
 
 
 def one_sender(address: str) -> str:

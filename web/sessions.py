@@ -7,7 +7,7 @@ import hashlib
 import secrets
 import time
 from collections.abc import Iterable
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import sqlalchemy as sql
 
@@ -68,19 +68,23 @@ def forget(store: Store, session: str) -> None:
     store.erase_traces()
 
 
+def nobody() -> dict[str, Any]:
+    """Return the row of a new session that no token opens, for rows on which others built."""
+    return {"id": secrets.token_hex(8), "token": digest(secrets.token_urlsafe(32)), "created": 0.0}
+
+
 def withdraw(store: Store, session: str, keeps: Iterable[Keeps]) -> None:
     """Delete a session with all that belongs to it, but for that on which other people built.
 
     What is kept belongs to a session of nobody from then on: a random id that no token opens, another for each
     withdrawal, and without a time.
     """
-    nobody = Session(secrets.token_hex(8), secrets.token_urlsafe(32))
-    row = {"id": nobody.id, "token": digest(nobody.token), "created": 0.0}
+    row = nobody()
 
     def work(connection: sql.Connection) -> None:
         connection.execute(sql.insert(SESSIONS).values(row))
-        kept = sum([keep(connection, session, nobody.id) for keep in keeps])
-        gone = [session] if kept else [session, nobody.id]
+        kept = sum([keep(connection, session, row["id"]) for keep in keeps])
+        gone = [session] if kept else [session, row["id"]]
         connection.execute(sql.delete(SESSIONS).where(SESSIONS.c.id.in_(gone)))
 
     store.write(work)

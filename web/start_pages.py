@@ -10,7 +10,7 @@ from hearth.web.phrases import language, script
 from hearth.web.room import Who, get, post
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.security import own_address, scheme_of
-from hearth.web.sender_addresses import sender_of
+from hearth.web.sender_addresses import is_of_lab, sender_of
 from hearth.web.third_party_scripts import REMEDY, THIRD_PARTY, missing
 from hearth.web.web_errors import WebError
 
@@ -27,12 +27,13 @@ MINUTES_TO_COME = 10
 
 def _start(visit: Visit) -> Response:
     lacking = {name: THIRD_PARTY[name].purpose for name in missing()}
-    return visit.page("start.html", lacking=lacking, remedy=REMEDY)
+    deleted = visit.session is None and visit.fields.get("deleted") == "yes"
+    return visit.page("start.html", lacking=lacking, remedy=REMEDY, deleted=deleted)
 
 
 def _begin(visit: Visit) -> Response:
     """Start a session, unless there is one, and go on to where the person wanted to go."""
-    if visit.session is None:
+    if visit.session is None and not is_of_lab(_sender(visit), visit.web.lab):
         visit.web.rates["begin"].check(_sender(visit), "/begin")
     session = visit.session or sessions.start(visit.web.store)
     wanted = visit.field("to", 1_000)
@@ -73,15 +74,17 @@ def _came(visit: Visit) -> Response:
 
 def _mine(visit: Visit) -> Response:
     assert visit.session is not None
-    return visit.page("mine.html", link=f"{base_of(visit)}{COME}/{visit.session.token}")
+    studied = any(takes_part(visit.web, visit.person) for takes_part in visit.web.studied)
+    return visit.page("mine.html", link=f"{base_of(visit)}{COME}/{visit.session.token}", studied=studied)
 
 
 def _delete(visit: Visit) -> Response:
     """Delete a session with all that belongs to it, as its person asked, except works on which others built."""
     sessions.withdraw(visit.web.store, visit.person, visit.web.keeps)
     visit.web.written()
-    answer = visit.go("/")
+    answer = visit.go("/?deleted=yes")
     answer.delete_cookie(sessions.COOKIE)
+    answer.headers["Clear-Site-Data"] = '"storage"'  # what a page kept of an unfinished text goes, too
     return answer
 
 

@@ -140,27 +140,37 @@ def without_effect(program: Program, known: Knowledge) -> Iterator[Finding]:
         yield Finding(Code.NO_EFFECT, -1, "this program only walks and looks", "write the steps that are done there")
 
 
+_DIFFERING = {
+    "missing": "used, but not declared as props",
+    "unused": "declared as props, but not used",
+    "more": "used in more pieces than were declared",
+    "fewer": "declared in more pieces than are used",
+    "no_room": "walked to, but not declared as rooms",
+}
+"""The ways in which a scene and a program differ, with their words."""
+
+
 def undeclared(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[Finding]:
     """Yield declared rooms and props that are not used, and those used but not declared (thesis figure 3-3)."""
+    for kind, names in scene_and_use(program, row, known):
+        shown = ", ".join(names[:4])
+        yield Finding(Code.UNDECLARED, -1, f"{_DIFFERING[kind]}: {shown}", found=shown)
+
+
+def scene_and_use(program: Program, row: Mapping[str, Any], known: Knowledge) -> Iterator[tuple[str, list[str]]]:
+    """Yield how a declared scene and a program differ: a kind of `_DIFFERING`, and the classes that it concerns."""
     rooms, props = ({one["name"]: one["quantity"] for one in row.get(part) or ()} for part in ("rooms", "props"))
     if not props and not rooms:
         return
     used = _used(program, known)
-    missing = sorted(name for name in used if name not in props)
-    idle = sorted(name for name in props if name not in used and not known.has(name, "BODY_PART"))
-    wrong = sorted(name for name in used if name in props and used[name] > (props[name] or 1))
-    more = sorted(name for name in used if name in props and used[name] < (props[name] or 1))
-    walked = sorted({r.name for s in program.steps for r in s.objects if known.is_room(r.name)} - rooms.keys())
-    for names, message in (
-        (missing, "used, but not declared as props"),
-        (idle, "declared as props, but not used"),
-        (wrong, "used in more pieces than were declared"),
-        (more, "declared in more pieces than are used"),
-        (walked, "walked to, but not declared as rooms"),
-    ):
-        if names:
-            shown = ", ".join(names[:4])
-            yield Finding(Code.UNDECLARED, -1, f"{message}: {shown}", found=shown)
+    differing = {
+        "missing": {name for name in used if name not in props},
+        "unused": {name for name in props if name not in used and not known.has(name, "BODY_PART")},
+        "more": {name for name in used if name in props and used[name] > (props[name] or 1)},
+        "fewer": {name for name in used if name in props and used[name] < (props[name] or 1)},
+        "no_room": {r.name for s in program.steps for r in s.objects if known.is_room(r.name)} - rooms.keys(),
+    }
+    yield from ((kind, sorted(names)) for kind, names in differing.items() if names)
 
 
 def _used(program: Program, known: Knowledge) -> dict[str, int]:

@@ -150,8 +150,8 @@ def test_a_whole_way_by_mouse(opened):
     assert page.locator("canvas.replay").get_attribute("data-tick") == "2"
     assert len(set(page.locator("canvas.replay").screenshot())) > 100, "there is something to see"
     page.click("#submit")
-    page.wait_for_url("**/annotate/tasks")
-    assert "your program is submitted" in page.text_content("main")
+    page.wait_for_url("**/annotate/tasks?thanks=yes")
+    assert "your program is handed in" in page.text_content("main")
 
 
 def tab_to(page, selector) -> None:
@@ -240,7 +240,7 @@ def test_a_whole_way_by_keyboard_alone(opened, tmp_path):
     page.wait_for_selector("#result .good")
     tab_to(page, "#submit")
     page.keyboard.press("Enter")
-    page.wait_for_url("**/annotate/tasks")
+    page.wait_for_url("**/annotate/tasks?thanks=yes")
     reviewed_and_built(opened, tmp_path)
 
 

@@ -116,8 +116,7 @@ def test_each_card_leads_to_its_room(page, served):
         if link(page, "Back").count():
             go(page, link(page, "Back"))
         page.goto(f"{served.address}/annotate/")
-    go(page, link(page, "Describe a film"))
-    go(page, link(page, "Back"))
+    assert link(page, "Describe a film").count() == 0, "there are no films"
     go(page, link(page, "tutorial"))
     seen(page)
     go(page, link(page, "Choose a description"))
@@ -176,6 +175,47 @@ def test_a_program_is_described_written_run_and_handed_in(page, served):
     page.wait_for_url("**/annotate/tasks*")
     go(page, page.locator(".list a").first)
     go(page, link(page, "Set the scene"))
+
+
+def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, served):
+    page.goto(f"{served.address}/annotate/describe")
+    describe(page)
+    go(page, page.get_by_role("link", name="Write the program for"))
+    page.go_back()
+    go(page, link(page, "Your work"))
+    page.goto(f"{served.address}/annotate/tasks")
+    to_composer(page)
+    add(page, "Walk", "sofa")
+    for keep in ("#leave-step", "#keep-step"):
+        press(page, page.locator("#steps button[aria-label^='Change step 1']"))
+        page.select_option("#slot-0", label="television")
+        press(page, keep)
+    press(page, "#undo")
+    press(page, "#redo")
+    with page.context.expect_page() as opened:
+        press(page, page.get_by_role("link", name="Help"))
+    opened.value.close()
+    page.select_option("#action", "Dance")
+    for control in ("#add-step button", "#submit", "#sure"):
+        press(page, control)
+    page.wait_for_url("**/annotate/tasks*")
+    go(page, page.locator(".list a").first)
+    page.goto(f"{page.url}/compose")
+    go(page, page.locator("main").get_by_role("link", name="another description"))
+    page.goto(f"{served.address}/annotate/")
+    go(page, link(page, "Your work"))
+    go(page, page.get_by_role("link", name="Look at it"))
+    go(page, link(page, "Your work"))
+    go(page, button(page, "Take it back, to change it"))
+    page.wait_for_selector("#action option", state="attached")
+    page.goto(f"{served.address}/mine")
+    go(page, link(page, "Your work"))
+    go(page, page.locator("main").get_by_role("link", name=TITLE, exact=True))
+    for _ in range(2):
+        page.goto(f"{served.address}/annotate/mine")
+        press(page, page.locator("summary").first)
+        go(page, button(page, "Delete it"))
+    seen(page)
 
 
 def test_a_program_is_reviewed_marked_and_graded(page, served):

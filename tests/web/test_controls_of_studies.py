@@ -61,7 +61,9 @@ def test_the_whole_way_of_a_study_that_is_played(opened):
     _, page = opened(SMALL + RECRUITED)
     page.route("https://app.prolific.com/**", lambda route: route.fulfill(body="<h1>Prolific</h1>"))
     seen(page)
-    go(page, page.get_by_role("link", name="No, thank you"))
+    assert go(page, page.get_by_role("link", name="No, thank you")) == "You do not take part"
+    go(page, page.get_by_role("link", name="Read it again"))
+    go(page, page.get_by_role("link", name="the whole list"))
     page.go_back()
     assert go(page, page.locator("main").get_by_role("link", name="Your session")) == "Your session"
     page.go_back()

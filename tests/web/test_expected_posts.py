@@ -12,7 +12,7 @@ from hearth.web.study.expected_posts import TURNS
 from hearth.web.study.study_store import StoreLedger
 
 BROWSER = {"accept": "text/html,application/xhtml+xml,*/*;q=0.8"}
-UNASKED = "What you sent last is not asked for now, and changed nothing. "
+UNASKED = "You have done this already, perhaps in another tab: what you sent last has changed nothing. "
 
 
 def events(server):
@@ -101,7 +101,7 @@ def test_the_form_of_a_film_that_is_sent_twice_does_not_judge_the_next(judging):
     assert person.post("/study/answer", data=first).status_code == 303
     before = events(judging)
     assert refusal(person, "answer", **first) == ("trial", "1", "0")
-    assert line(person, "answer", **first) == "First judge what is shown here."
+    assert line(person, "answer", **first) == "Judge what is shown here now."
     assert refusal(person, "begin") == ("stage", "no stage of this study", "trial")
     assert events(judging) == before
     assert person.post("/study/answer", data={**first, "trial": "1"}).status_code == 303

@@ -108,3 +108,40 @@ def test_an_address_of_completion_is_checked(completion):
 def test_a_platform_that_is_not_known_is_refused():
     with pytest.raises(HearthError, match="platform"):
         study_of(recruited(platform="elsewhere"), "s.yaml")
+
+
+def test_the_consent_page_that_is_lost_keeps_the_ids(study):
+    client, _, hidden = came(study)
+    page = client.get("/study/", headers=HTML).text
+    assert dict(re.findall('<input type="hidden" name="([A-Z_]+)" value="([^"]*)">', page)) == hidden
+    assert client.post("/study/agree", data={"agree": "yes"}).status_code == 303
+    assert "5f3a" in study.researcher().get("/desk/study/payments.csv").text
+
+
+def test_the_last_page_has_the_way_back_first_and_says_what_the_code_is_for(study):
+    client, _, hidden = came(study)
+    client.post("/study/agree", data={"agree": "yes", **hidden})
+    for quality in ("4", "2"):
+        client.post("/study/answer", data={"answer-quality": quality})
+    client.post("/study/answer", data={})
+    done = client.get("/study/").text
+    assert done.index(COMPLETION) < done.index("Your code is") and "not a code of Prolific" in done
+    mine = client.get("/mine").text
+    assert "go back to the study" in mine and 'href="/study/"' in mine and "/annotate/mine" not in mine
+
+
+def test_the_same_link_elsewhere_is_said_before_one_agrees(study):
+    client, _, hidden = came(study)
+    client.post("/study/agree", data={"agree": "yes", **hidden})
+    assert "by your link already" in came(study)[1]
+    assert "by your link already" not in came(study, LINK.replace("5f3a", "9a9a"))[1]
+
+
+def test_declining_and_stopping_say_what_to_do_at_the_platform(study):
+    client, page, hidden = came(study)
+    assert 'href="/study/?no=yes"' in page
+    declined = client.get("/study/?no=yes", headers=HTML).text
+    assert "You do not take part" in declined and "At Prolific, give your place back" in declined
+    client.post("/study/agree", data={"agree": "yes", **hidden})
+    client.post("/study/leave")
+    assert "At Prolific, give your place back" in client.get("/study/").text

@@ -107,7 +107,7 @@ def test_a_replay_in_3d_is_judged_by_keyboard_alone(serving, page, tmp_path):
     for _ in range(2):
         page.wait_for_selector(".replay[data-ready][data-tick='0']", timeout=120_000)
         steps = int(page.inner_text("#tick").split(" of ")[1])
-        assert page.locator("h1").inner_text().startswith("Replay ") and page.get_by_text("Replays done").count() == 1
+        assert page.locator("h1").inner_text().startswith("Film ") and page.get_by_text("Films done").count() == 1
         assert page.locator(".replay").evaluate("it => it.width / it.height") == pytest.approx(4 / 3, abs=0.02)
         assert seen(page) == []
         pictures = [page.locator(".replay").screenshot()]

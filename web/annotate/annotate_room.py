@@ -10,6 +10,7 @@ from hearth.web.annotate import (
     annotation_marks,
     descriptions,
     desk_queue,
+    own_work,
     program_stage,
     review_stage,
     reviewers,
@@ -32,7 +33,8 @@ def _home(visit: Visit) -> Response:
         "accepted": len(annotated_programs.accepted(store, person)),
         "films": visit.web.films is not None,
     }
-    return visit.page("annotate/home.html", waiting=waiting, qualified=is_qualified(store, person))
+    qualified, invited = is_qualified(store, person), reviewers.is_invited(store, person)
+    return visit.page("annotate/home.html", waiting=waiting, qualified=qualified, invited=invited)
 
 
 def _tutorial(visit: Visit) -> Response:
@@ -58,6 +60,10 @@ ROOM = Room(
         post("/task/{text}/run", program_stage.try_out),
         post("/task/{text}/replay", program_stage.replay),
         post("/task/{text}/submit", program_stage.submit),
+        get("/mine", own_work.own_page),
+        post("/mine/back/{text}", own_work.take_back),
+        post("/mine/program/{text}", own_work.withdraw_program),
+        post("/mine/description/{text}", own_work.withdraw_text),
         get("/plan/{home}", program_stage.plan),
         get("/shapes/{home}", program_stage.shapes),
         get("/replay.js", program_stage.replay_script, Who.ANYONE),
@@ -90,6 +96,7 @@ ROOM = Room(
         get("/{file}", annotate_desk.download),
     ),
     needs=("blockly",),
+    own="/annotate/mine",
     opens=write_collected,
     keeps=withdrawal.keep,
 )

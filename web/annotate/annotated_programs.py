@@ -31,6 +31,12 @@ def text_of(store: Store, text: str) -> Row:
     return found
 
 
+def latest_text(store: Store, person: str) -> Row | None:
+    """Return the description that a person handed in last; None if there is none."""
+    query = sql.select(TEXTS).where(TEXTS.c.session == person).order_by(TEXTS.c.created.desc()).limit(1)
+    return store.row(query)
+
+
 def own_program(store: Store, person: str, text: str) -> Row | None:
     """Return the program that a person has begun for a description."""
     query = sql.select(PROGRAMS).where(PROGRAMS.c.session == person, PROGRAMS.c.text == text)
@@ -104,8 +110,10 @@ def tasks(store: Store, person: str, most: int = 100) -> list[Row]:
     given = PROGRAMS.alias("given")
     of_others = (given.c.text == TEXTS.c.id, given.c.session != person, given.c.state != DRAFT)
     others = sql.select(sql.func.count()).select_from(given).where(*of_others).correlate(TEXTS).scalar_subquery()
+    own_text = (TEXTS.c.session == person).label("mine")
+    columns = (TEXTS.c.id, TEXTS.c.scene, TEXTS.c.title, PROGRAMS.c.state, PROGRAMS.c.note, own_text)
     query = (
-        sql.select(TEXTS.c.id, TEXTS.c.scene, TEXTS.c.title, PROGRAMS.c.state, PROGRAMS.c.note, others.label("others"))
+        sql.select(*columns, others.label("others"))
         .select_from(TEXTS.outerjoin(PROGRAMS, mine))
         .order_by(PROGRAMS.c.state.is_(None), others, TEXTS.c.created)
         .limit(most)

@@ -133,7 +133,8 @@ def _program_page(visit: Visit, kind: str, template: str, **values: Any) -> Resp
     done = _marked(visit, kind)
     left = [row for row in annotated_programs.accepted(visit.web.store, visit.person) if row["id"] not in done]
     row = left[0] if left else None
-    words = [block.words(visit.web.known) for block in stored(row["draft"]).blocks] if row else []
+    draft = stored(row["draft"]) if row else None
+    words = [block.words(visit.web.known, draft) for block in draft.blocks] if draft else []
     return visit.page(template, program=row, words=words, left=len(left), done=len(done), **values)
 
 

@@ -46,12 +46,11 @@ def actions(known: Knowledge) -> tuple[dict[str, Any], ...]:
 def things(draft: Draft, known: Knowledge) -> list[dict[str, Any]]:
     """Return every declared thing: its name, instance, words, and the kinds of slots that take it."""
     fits = {name: _slots(name, known) for name in (*draft.rooms, *draft.props)}
-    several = {name: count > 1 for name, count in (*draft.rooms.items(), *draft.props.items())}
     return [
         {
             "name": ref.name,
             "instance": ref.instance,
-            "words": ref.name.replace("_", " ") + (f" {ref.instance}" if several[ref.name] else ""),
+            "words": draft.called(ref),
             "room": ref.name in draft.rooms,
             "fits": fits[ref.name],
         }

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import HANDS
+from hearth.schemas.spoken_words import spoken
 from hearth.schemas.vocabulary import CHARACTER_CLASS
 from hearth.simulation.world.world import World
 
@@ -34,4 +35,4 @@ def _parts(change: Change, world: World) -> Iterator[str]:
 
 def _name(node: int, world: World) -> str:
     name = world.home.classes[world.home.index[node]]
-    return "the person" if name == CHARACTER_CLASS else f"the {name.replace('_', ' ')}"
+    return "the person" if name == CHARACTER_CLASS else f"the {spoken(name)}"

@@ -1,5 +1,6 @@
 """Stage one: a title and a description of an activity that begins in a room that was drawn (thesis 3.3)."""
 
+import re
 import secrets
 import time
 from typing import Any
@@ -9,7 +10,10 @@ from starlette.responses import Response
 
 from hearth.pipelines.crowd.topics import no_activity
 from hearth.schemas.rng import rng
+from hearth.studies.participant_flags import is_gibberish
+from hearth.web.annotate import annotated_programs
 from hearth.web.annotate.annotate_tables import TEXTS
+from hearth.web.phrases import say
 from hearth.web.room_request import Visit
 
 SCENES = (
@@ -17,7 +21,13 @@ SCENES = (
 )  # fmt: skip
 """The eight rooms (thesis 3.3)."""
 
+MOST_SENT = 100_000
+"""Characters of a description that is answered with the wish to shorten it."""
+
 FEWEST_WORDS, MOST_TITLE, MOST_DESCRIPTION = 10, 80, 2_000
+
+ENGLISH_WORDS = frozenset({"the", "and", "then", "to", "of", "with", "my", "your", "it", "is", "on", "up", "out"})
+"""Words of which every English description of some length has one."""
 
 EXAMPLES = (
     ("living room", "Watch TV",
@@ -32,15 +42,18 @@ EXAMPLES = (
 def describe(visit: Visit) -> Response:
     """Return the page of stage one."""
     thanks = visit.fields.get("thanks") == "yes"
-    return _page(visit, title="", description="", wishes=(), thanks=thanks)
+    text = annotated_programs.latest_text(visit.web.store, visit.person) if thanks else None
+    return _page(visit, title="", description="", wishes=(), thanks=thanks, text=text)
 
 
 def submit_description(visit: Visit) -> Response:
     """Store a description, or ask politely for the missing parts."""
-    title, description = visit.field("title").strip(), visit.field("description").strip()
-    wishes = lacks(title, description)
-    if wishes:
-        return _page(visit, 400, title=title, description=description, wishes=wishes, thanks=False)
+    title, description = visit.field("title").strip(), visit.field("description", MOST_SENT).strip()
+    if wishes := lacks(title, description):
+        return _page(visit, 400, title=title, description=description, wishes=wishes)
+    if visit.field("ask", 10) and (questions := doubts(visit, title, description)):
+        wishes = (*questions, say("annotate", "as_it_is"))
+        return _page(visit, 400, title=title, description=description, wishes=wishes, asked=True)
     row = {
         "id": f"D{secrets.token_hex(5).upper()}",
         "session": visit.person,
@@ -60,8 +73,9 @@ def lacks(title: str, description: str) -> tuple[str, ...]:
         found.append("Please give the activity a short title of its own, such as “Make tea”.")
     words = len(description.split())
     if words < FEWEST_WORDS:
+        so_far = "1 word" if words == 1 else f"{words} words"
         found.append(
-            f"Please write a little more: {words} words so far, and others need at least {FEWEST_WORDS} to understand "
+            f"Please write a little more: {so_far} so far, and others need at least {FEWEST_WORDS} to understand "
             "what is done. Two or three sentences are usually right."
         )
     if len(description) > MOST_DESCRIPTION:
@@ -69,6 +83,24 @@ def lacks(title: str, description: str) -> tuple[str, ...]:
     if not found and (other := no_activity(f"{title}. {description}")):
         found.append(f"This reads like {other[0]}. Please describe something that a person does at home.")
     return tuple(found)
+
+
+def doubts(visit: Visit, title: str, description: str) -> tuple[str, ...]:
+    """Return what a page asks about before it takes a description: nonsense, another language, the same once more."""
+    found = []
+    if is_gibberish(title) or is_gibberish(description):
+        found.append("gibberish")
+    elif not set(re.findall("[a-z]+", description.casefold())) & ENGLISH_WORDS:
+        found.append("language")
+    mine = visit.web.store.rows(sql.select(TEXTS.c.description).where(TEXTS.c.session == visit.person))
+    if any(folded(each["description"]) == folded(description) for each in mine):
+        found.append("again")
+    return tuple(say("annotate", name) for name in found)
+
+
+def folded(text: str) -> str:
+    """Return a text by which descriptions with the same words are found."""
+    return " ".join(text.casefold().split())
 
 
 def _scene(visit: Visit) -> str:
@@ -79,4 +111,5 @@ def _scene(visit: Visit) -> str:
 
 
 def _page(visit: Visit, status: int = 200, **values: Any) -> Response:
-    return visit.page("annotate/describe.html", status, scene=_scene(visit), examples=EXAMPLES, **values)
+    given = {"thanks": False, "text": None, "asked": False, "most": MOST_DESCRIPTION, **values}
+    return visit.page("annotate/describe.html", status, scene=_scene(visit), examples=EXAMPLES, **given)

@@ -12,6 +12,7 @@ from hearth.schemas.failures import Code
 from hearth.studies.participant_flags import is_gibberish
 from hearth.web.annotate import annotated_programs, program_stage
 from hearth.web.annotate.annotate_tables import PROGRAMS, REVIEWS, SUBMITTED, TEXTS
+from hearth.web.annotate.descriptions import folded
 from hearth.web.annotate.program_draft import stored
 from hearth.web.room_request import Visit
 from hearth.web.store import Row, Store
@@ -34,7 +35,7 @@ MOST_LISTED = 500
 def queue(store: Store) -> list[dict[str, Any]]:
     """Return the programs that were handed in, those that wait for review first."""
     texts = {each["id"]: each for each in store.rows(sql.select(TEXTS))}
-    same = Counter(_folded(each) for each in texts.values())
+    same = Counter(folded(each["description"]) for each in texts.values())
     programs = store.rows(sql.select(PROGRAMS).where(PROGRAMS.c.state != "draft").order_by(PROGRAMS.c.created))
     rows = [_listed(each, texts[each["text"]], same) for each in programs]
     return sorted(rows, key=lambda each: each["state"] != SUBMITTED)[:MOST_LISTED]
@@ -50,14 +51,10 @@ def _listed(program: Row, text: Row, same: Counter[str]) -> dict[str, Any]:
 def _signs(text: Row, steps: int, same: Counter[str]) -> Iterator[str]:
     if is_gibberish(text["title"]) or is_gibberish(text["description"]):
         yield "gibberish"
-    if same[_folded(text)] > 1:
+    if same[folded(text["description"])] > 1:
         yield "again"
     if steps < FEWEST_STEPS:
         yield "short"
-
-
-def _folded(text: Row) -> str:
-    return " ".join(str(text["description"]).casefold().split())
 
 
 def item(visit: Visit) -> Response:

@@ -1,6 +1,6 @@
 """The check of a program while it is written: the code of `check`, and the faults that `build` would refuse."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -10,6 +10,7 @@ from hearth.pipelines.checks.text_checks import check_program
 from hearth.schemas.diagnostics import Diagnostic
 from hearth.schemas.failures import Code
 from hearth.schemas.syntax import parse_program
+from hearth.web.annotate.fault_words import in_words, said, scene_in_words
 from hearth.web.annotate.program_draft import SPECIAL, Draft, is_plain
 
 REFUSED = frozenset({Code.CONTRADICTION})
@@ -44,19 +45,21 @@ def check_draft(draft: Draft, title: str, description: str, known: Knowledge) ->
     program, syntax = parse_program("\n".join(source) + "\n")
     program = replace(program, title=title, description=description)
     faults, warnings = check_program(program, known, "", source, affordances=True, lint=True)
-    found = [_found(each, numbers, fault=True) for each in (*syntax, *faults)]
-    found += [_found(each, numbers, fault=each.code in REFUSED) for each in warnings]
+    if not draft.blocks:
+        return [Found(-1, True, str(Code.EMPTY), *said("no_steps"))]
+
+    def found_of(each: Diagnostic, fault: bool) -> Found:
+        step = numbers[each.line - 1] - 1 if 0 < each.line <= len(numbers) else -1
+        block = draft.blocks[step] if step >= 0 else None
+        return Found(step, fault, str(each.code), *in_words(each, block, draft, known))
+
+    found = [found_of(each, True) for each in (*(syntax if source else ()), *faults)]
+    found += [found_of(each, each.code in REFUSED) for each in warnings]
     if not faults:
         scene = {"rooms": _rows(draft.rooms), "props": _rows(draft.props)}
-        undeclared = meaning_checks.undeclared(program, scene, known)
-        found += [Found(-1, False, str(each.code), each.message, each.remedy) for each in undeclared]
+        differing = meaning_checks.scene_and_use(program, scene, known)
+        found += [Found(-1, False, str(Code.UNDECLARED), *scene_in_words(kind, names)) for kind, names in differing]
     return sorted((*found, *_unfinished(draft, dict(expanded.replaced))), key=lambda each: (each.step, not each.fault))
-
-
-_UNFIT = (
-    "a special block has letters, digits and the usual marks, 200 characters at most",
-    "leave out other signs, such as pictures and brackets",
-)
 
 
 def _shown_plain(draft: Draft) -> Draft:
@@ -69,26 +72,16 @@ def _rows(quantities: Mapping[str, int]) -> list[dict[str, Any]]:
     return [{"name": name, "quantity": quantity} for name, quantity in quantities.items()]
 
 
-def _found(each: Diagnostic, numbers: Sequence[int], *, fault: bool) -> Found:
-    step = numbers[each.line - 1] - 1 if 0 < each.line <= len(numbers) else -1
-    return Found(step, fault, str(each.code), each.message, each.suggestion)
-
-
 def _unfinished(draft: Draft, replaced: Mapping[int, str]) -> list[Found]:
     """Special blocks: one without text is a fault; one that no steps are known for is waited with."""
-    if not draft.blocks:
-        return [Found(-1, True, str(Code.EMPTY), "the program has no steps", "put a block into it")]
     found = []
     for number, block in enumerate(draft.blocks):
         if block.action != SPECIAL:
             continue
         if not is_plain(block.text):
-            found.append(Found(number, True, str(Code.SYNTAX), *_UNFIT))
+            found.append(Found(number, True, str(Code.SYNTAX), *said("special_unfit")))
         elif not block.text:
-            found.append(Found(number, True, str(Code.EMPTY), "a special block without text", "write what is done"))
+            found.append(Found(number, True, str(Code.EMPTY), *said("special_empty")))
         elif number + 1 not in replaced:
-            message = "there is no block for this yet: a researcher reads it, and it does not run"
-            found.append(
-                Found(number, False, str(Code.SPECIAL_BLOCK), message, "use other blocks if they say the same")
-            )
+            found.append(Found(number, False, str(Code.SPECIAL_BLOCK), *said("special_waits")))
     return found

@@ -12,6 +12,7 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.program import ObjectRef, Step
+from hearth.schemas.spoken_words import spoken
 from hearth.schemas.syntax import print_object, print_step
 from hearth.web.web_errors import WebError
 
@@ -43,11 +44,11 @@ class Block(NamedTuple):
             return f"[{SPECIAL}] <{self.text}>"
         return print_step(Step(self.action, tuple(filter(None, self.things))))
 
-    def words(self, known: Knowledge) -> str:
-        """Return the step as a phrase: `Put cup 1 on table 1`."""
+    def words(self, known: Knowledge, scene: Draft) -> str:
+        """Return the step as a phrase, as its author sees it: `Put cup 1 on table`."""
         if self.action == SPECIAL:
             return f"Special: {self.text}"
-        names = [f"{ref.name.replace('_', ' ')} {ref.instance}" if ref else "…" for ref in self.things]
+        names = [scene.called(ref) if ref else "…" for ref in self.things]
         return known.actions[self.action].template.format(*names)
 
 
@@ -73,6 +74,11 @@ class Draft:
         """Return every declared thing, rooms first."""
         both = [*self.rooms.items(), *self.props.items()]
         return [ObjectRef(name, number) for name, count in both for number in range(1, count + 1)]
+
+    def called(self, thing: ObjectRef) -> str:
+        """Return the words for a declared thing, with its number where the scene has several of the kind."""
+        count = self.rooms.get(thing.name, 0) or self.props.get(thing.name, 0)
+        return f"{spoken(thing.name)} {thing.instance}" if count > 1 else spoken(thing.name)
 
     def as_json(self) -> dict[str, Any]:
         """Return the draft as it is stored and sent."""

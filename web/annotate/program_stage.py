@@ -2,16 +2,19 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 from starlette.responses import Response
 
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.failures import Code
+from hearth.schemas.spoken_words import spoken
 from hearth.web.annotate import annotated_programs, block_grammar, live_check, trial_run
 from hearth.web.annotate.annotate_tables import SUBMITTED
 from hearth.web.annotate.program_draft import MOST_KINDS, Draft, read_blocks, read_quantity, stored
 from hearth.web.messages import int_field, text_field
+from hearth.web.phrases import say
 from hearth.web.room_request import Visit
 from hearth.web.store import Row
 from hearth.web.web_errors import WebError
@@ -30,65 +33,80 @@ def words_of(visit: Visit, text: Row, draft: Draft) -> list[tuple[str, list[dict
     """Return the steps of a program in words, each with its faults and notes."""
     found = check_of(visit, text, draft)
     steps = [[each for each in found if each["step"] == number] for number in range(len(draft.blocks))]
-    return [(block.words(visit.web.known), some) for block, some in zip(draft.blocks, steps, strict=True)]
+    return [(block.words(visit.web.known, draft), some) for block, some in zip(draft.blocks, steps, strict=True)]
 
 
 def read_task(visit: Visit) -> Response:
     """Step two: the description."""
     text = _text(visit)
     program = annotated_programs.own_program(visit.web.store, visit.person, text["id"])
-    return visit.page("annotate/read.html", text=text, program=program)
+    return visit.page("annotate/read.html", text=text, program=program, mine=text["session"] == visit.person)
 
 
 def scene_page(visit: Visit) -> Response:
     """Step three: rooms and props."""
-    return _scene_page(visit, _draft(visit), 200, "")
+    empty = visit.fields.get("empty") == "yes"
+    return _scene_page(visit, _draft(visit), 200, say("annotate", "empty_scene") if empty else "")
 
 
 def set_scene(visit: Visit) -> Response:
     """Store the scene; go on to the blocks, or stay to add another prop."""
     draft, text = _draft(visit), visit.part("text")
+    if _own(visit)["state"] not in annotated_programs.CHANGED:
+        return visit.go(f"/annotate/task/{text}/compose?closed=scene")
     rooms = {
         name: count for name in visit.web.known.rooms if (count := read_quantity(visit.field(f"room {name}"), name))
     }
     props = {name: count for name in draft.props if (count := read_quantity(visit.field(f"prop {name}", 10), name))}
-    wanted, fault = visit.field("add", 100).strip(), ""
-    if wanted:
-        found = visit.web.known.object_class(wanted)
-        if found is None or found.category in ("Rooms", "Characters"):
-            near = visit.web.known.suggest(wanted)
-            fault = f"Nothing is called “{wanted}”." + (f" Did you mean {' or '.join(near)}?" if near else "")
-        elif len(props) < MOST_KINDS:
-            props[found.name] = max(1, read_quantity(visit.field("quantity", 10), "quantity"))
+    wanted, going = visit.field("add", 100).strip(), visit.field("go", 10) == "compose"
+    fault = _added(visit, wanted, props) if wanted else ""
     version = int(visit.field("version", 9)) if visit.field("version", 9).isdecimal() else 0
     draft = draft.with_scene(rooms, props)
     annotated_programs.save(visit.web.store, visit.person, text, version, draft)
-    if visit.field("go", 10) == "compose" and not fault:
-        return visit.go(f"/annotate/task/{text}/compose")
+    if going and not fault and not draft.things():
+        fault = say("annotate", "empty_scene")
     if fault:
-        return _scene_page(visit, draft, 400, fault)
-    return visit.go(f"/annotate/task/{text}/scene#add")
+        return _scene_page(visit, draft, 400, fault, wanted)
+    return visit.go(f"/annotate/task/{text}/compose" if going else f"/annotate/task/{text}/scene#add")
 
 
-def _scene_page(visit: Visit, draft: Draft, status: int, fault: str) -> Response:
-    known, program = visit.web.known, _own(visit)
-    text = _text(visit)
-    names = sorted(name for name, thing in known.objects.items() if thing.category not in ("Rooms", "Characters"))
-    values: dict[str, Any] = {
-        "rooms": known.rooms,
-        "names": names,
-        "draft": draft,
-        "version": program["version"],
-        "fault": fault,
-    }
+def _added(visit: Visit, wanted: str, props: dict[str, int]) -> str:
+    """Add a thing to the props, by any of its names; return the fault where there is none, with the nearest names."""
+    known = visit.web.known
+    found = known.object_class(wanted) or known.object_class(_by_words(known).get(wanted.casefold(), ""))
+    if found is None or found.category in ("Rooms", "Characters"):
+        near = ", ".join(dict.fromkeys(f"“{spoken(name)}”" for name in known.suggest(wanted)))
+        advice = say("annotate", "near", names=near) if near else say("annotate", "none_near")
+        return f"{say('annotate', 'unknown_thing', thing=wanted)} {advice}"
+    if len(props) >= MOST_KINDS and found.name not in props:
+        return say("annotate", "too_many", most=MOST_KINDS)
+    props[found.name] = max(1, read_quantity(visit.field("quantity", 10), "quantity"))
+    return ""
+
+
+@lru_cache(maxsize=4)
+def _by_words(known: Knowledge) -> dict[str, str]:
+    """Return the classes of things by the words that people read for them."""
+    things = ((name, thing) for name, thing in known.objects.items() if thing.category not in ("Rooms", "Characters"))
+    return {spoken(name): name for name, _ in sorted(things, reverse=True)}
+
+
+def _scene_page(visit: Visit, draft: Draft, status: int, fault: str, wanted: str = "") -> Response:
+    program, text = _own(visit), _text(visit)
+    if not draft.rooms and not draft.props and text["scene"].replace(" ", "_") in visit.web.known.rooms:
+        draft = draft.with_scene({text["scene"].replace(" ", "_"): 1}, {})  # where the activity begins
+    values: dict[str, Any] = {"rooms": visit.web.known.rooms, "names": sorted(_by_words(visit.web.known)),
+                              "draft": draft, "version": program["version"], "fault": fault, "wanted": wanted,
+                              "closed": program["state"] not in annotated_programs.CHANGED}  # fmt: skip
     return visit.page("annotate/scene.html", status, text=text, **values)
 
 
 def compose(visit: Visit) -> Response:
     """Step four: the program."""
     text, program = _text(visit), _own(visit)
-    if not stored(program["draft"]).things():
-        return visit.go(f"/annotate/task/{text['id']}/scene")
+    draft = stored(program["draft"])
+    if not draft.things():
+        return visit.go(f"/annotate/task/{text['id']}/scene?empty=yes")
     base, closed = f"/annotate/task/{text['id']}", program["state"] not in annotated_programs.CHANGED
     values: dict[str, Any] = {
         "base": base,
@@ -96,6 +114,8 @@ def compose(visit: Visit) -> Response:
         "homes": trial_run.homes(),
         "closed": closed,
         "program": program,
+        "words": words_of(visit, text, draft) if closed else [],
+        "scene_closed": closed and visit.fields.get("closed") == "scene",
     }
     return visit.page("annotate/compose.html", text=text, **values)
 
@@ -128,30 +148,57 @@ def save(visit: Visit) -> Response:
 
 
 def submit(visit: Visit) -> Response:
-    """Hand the program in for review, if it has no fault."""
+    """Hand the program in for review, if it has no fault; one that does not run is asked about once.
+
+    Pages send the home in which its author tries it, and `sure` once the author has read why it does not run.
+    """
     message = visit.json()
-    draft = sent(visit, message, _draft(visit))
-    found = check_of(visit, _text(visit), draft)
-    if fault := next((each for each in found if each["fault"]), None):
-        refused = WebError(Code[fault["code"]], "steps", "a program without faults", fault["message"])
-        return visit.answer({**refused.as_json(), "found": found}, 400)
+    draft, text = sent(visit, message, _draft(visit)), _text(visit)
+    if refused := refusal(check_of(visit, text, draft)):
+        return visit.answer(refused, 400)
+    if "home" in message and message.get("sure") is not True:
+        visit.web.rates["run"].check(f"{visit.person} hands in", "submit")
+        result = trial_run.run_draft(draft, text["title"], text_field(message, "home", 40), visit.web.known)
+        if not result["ran"]:
+            return visit.answer({"ask": say("annotate", "does_not_run", home=result["home"], why=result["why"])})
     version = int_field(message, "version", 1, 10**9)
     annotated_programs.save(visit.web.store, visit.person, visit.part("text"), version, draft, SUBMITTED)
     return visit.answer({"go": "/annotate/tasks?thanks=yes"})
 
 
+def refusal(found: list[dict[str, Any]]) -> dict[str, Any] | None:
+    """Return the answer to a program with faults, with the first in words; None if it has none."""
+    faults = [each for each in found if each["fault"]]
+    if not faults:
+        return None
+    first = faults[0]
+    place = f"step {first['step'] + 1}" if first["step"] >= 0 else "program"
+    said = {"fault": first["message"], "remedy": first["remedy"]}
+    words = str(say("annotate", "in_step", number=first["step"] + 1, **said) if first["step"] >= 0
+                else say("annotate", "in_program", **said))  # fmt: skip
+    if len(faults) > 1:
+        words = say("annotate", "further", first=words, count=len(faults) - 1)
+    fault = WebError(Code[first["code"]], place, "a program without faults", first["message"])
+    return {**fault.as_json(), "found": found, "words": words}
+
+
 def try_out(visit: Visit) -> Response:
     """Run the program in a home."""
     message = visit.json()
-    draft = sent(visit, message, _draft(visit))
-    return visit.answer(run_of(visit, _text(visit), message, draft))
+    return ran(visit, _text(visit), message, sent(visit, message, _draft(visit)))
 
 
 def replay(visit: Visit) -> Response:
     """Return the same run in 3D."""
     message = visit.json()
-    draft = sent(visit, message, _draft(visit))
-    return visit.answer(run_of(visit, _text(visit), message, draft, trial_run.replay_draft))
+    return ran(visit, _text(visit), message, sent(visit, message, _draft(visit)), trial_run.replay_draft)
+
+
+def ran(visit: Visit, text: Row, message: dict[str, Any], draft: Draft, run: Run = trial_run.run_draft) -> Response:
+    """Answer with a run of a draft, in words or in 3D; or with its faults."""
+    if refused := refusal(check_of(visit, text, draft)):
+        return visit.answer(refused, 400)
+    return visit.answer(run_of(visit, text, message, draft, run))
 
 
 def run_of(
@@ -160,12 +207,9 @@ def run_of(
     """Return a run, in the home that a message names, of a draft without faults: in words, or in 3D.
 
     Raises:
-        WebError: TOO_FAST; or the code of the first fault.
+        WebError: TOO_FAST.
     """
     visit.web.rates["run"].check(visit.person, "run")
-    if fault := next((each for each in check_of(visit, text, draft) if each["fault"]), None):
-        place = f"step {fault['step'] + 1}" if fault["step"] >= 0 else "program"
-        raise WebError(Code[fault["code"]], place, "a program without faults", fault["message"])
     return run(draft, text["title"], text_field(message, "home", 40), visit.web.known)
 
 

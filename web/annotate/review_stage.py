@@ -71,20 +71,20 @@ def check(visit: Visit) -> Response:
 def try_out(visit: Visit) -> Response:
     """Run the corrected steps in a home."""
     _, text, draft, message = _mended(visit)
-    return visit.answer(program_stage.run_of(visit, text, message, draft))
+    return program_stage.ran(visit, text, message, draft)
 
 
 def replay(visit: Visit) -> Response:
     """Return the same run in 3D."""
     _, text, draft, message = _mended(visit)
-    return visit.answer(program_stage.run_of(visit, text, message, draft, trial_run.replay_draft))
+    return program_stage.ran(visit, text, message, draft, trial_run.replay_draft)
 
 
 def mend(visit: Visit) -> Response:
     """Accept the corrected steps instead of the submitted ones."""
     program, text, draft, message = _mended(visit)
-    if fault := next((each for each in program_stage.check_of(visit, text, draft) if each["fault"]), None):
-        raise WebError(Code[fault["code"]], "steps", "a program without faults", fault["message"])
+    if refused := program_stage.refusal(program_stage.check_of(visit, text, draft)):
+        return visit.answer(refused, 400)
     _store(visit, program, "mend", "", int_field(message, "version", 1, 10**9), draft)
     return visit.answer({"go": "/annotate/review"})
 

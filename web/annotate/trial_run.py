@@ -10,7 +10,6 @@ from hearth.datasets.report.floor_plan_svg import draw
 from hearth.grounding.grounded_run import Trial, attempt
 from hearth.homes import library
 from hearth.kb.knowledge import Knowledge
-from hearth.schemas.failure_words import sentence
 from hearth.schemas.failures import Code, Failure
 from hearth.schemas.optional_libraries import library as library_of
 from hearth.schemas.program import Program
@@ -20,6 +19,7 @@ from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
 from hearth.web.annotate.change_words import changed_in_words
+from hearth.web.annotate.fault_words import stop_in_words
 from hearth.web.annotate.program_draft import SPECIAL, Draft
 from hearth.web.web_errors import WebError
 
@@ -64,8 +64,11 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
     trial = _trial(lines, title, home, known)
     if isinstance(trial, Failure):
         at = numbers[trial.tick] if trial.tick < len(numbers) else -1
-        return {"home": home, "ran": False, "why": sentence(trial, code=False), "step": at, "ticks": [], "start": None}
-    return {"home": home, **_reported(trial, numbers, lines)}
+        why = stop_in_words(trial, numbers, draft, known)
+        return {"home": home, "ran": False, "why": why, "step": at, "ticks": [], "start": None}
+    found = _reported(trial, numbers, lines)
+    why = stop_in_words(trial.execution.failure, numbers, draft, known) if trial.execution.failure else ""
+    return {"home": home, **found, "why": why}
 
 
 def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
@@ -78,9 +81,11 @@ def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[
     from hearth.rendering.film.replay_3d import run_shapes
 
     library_of("trimesh")
-    trial = _trial(_lines(draft)[1], title, home, known)
+    numbers, lines = _lines(draft)
+    trial = _trial(lines, title, home, known)
     if isinstance(trial, Failure):
-        raise WebError(Code.NOT_RENDERED, "home", "a program that begins to run there", sentence(trial, code=False))
+        why = stop_in_words(trial, numbers, draft, known)
+        raise WebError(Code.NOT_RENDERED, "home", "a program that begins to run there", why)
     graph = library.load_graph(home, known)
     return {"home": f"/annotate/shapes/{home}", "run": run_shapes(trial.execution, graph, known)}
 
@@ -126,11 +131,10 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
         }
         for tick in range(len(worlds) - 1)
     ]
-    why = sentence(failure, code=False) if failure else ""
     at = numbers[failure.tick] if failure and failure.tick < len(numbers) else -1
     start = _where(placed(worlds[0]).agents[0].pose)
     added = trial.environment is not None
-    return {"ran": not failure, "why": why, "step": at, "ticks": ticks, "start": start, "added": added}
+    return {"ran": not failure, "step": at, "ticks": ticks, "start": start, "added": added}
 
 
 def _where(pose: Pose | None) -> list[float] | None:

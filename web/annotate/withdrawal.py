@@ -28,6 +28,14 @@ def keep(connection: sql.Connection, person: str, nobody: str) -> int:
     return programs + connection.execute(built_on.values(session=nobody)).rowcount
 
 
+def built_on(table: sql.Table, person: str) -> sql.ColumnElement[bool]:
+    """Return the condition of rows on which others built: accepted programs, and descriptions with programs to keep."""
+    if table is PROGRAMS:
+        return PROGRAMS.c.state == ACCEPTED
+    others = sql.and_(PROGRAMS.c.session != person, PROGRAMS.c.draft != EMPTY)
+    return TEXTS.c.id.in_(sql.select(PROGRAMS.c.text).where(others | (PROGRAMS.c.state == ACCEPTED)))
+
+
 def erase(store: Store, name: str) -> int:
     """Delete a description or a program by its id, with all that belongs to it; how many there were."""
 

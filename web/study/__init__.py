@@ -26,5 +26,6 @@ ROOM = Room(
         post("/forget", study_desk.forget),
         post("/dismiss", study_desk.dismiss),
     ),
+    studied=study_pages.takes_part,
 )
 """The room."""

@@ -4,12 +4,14 @@ from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
+from urllib.parse import parse_qsl, urlencode
 
 from starlette.responses import FileResponse, Response
 
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.storage.names import inside
+from hearth.studies.events import PLACES
 from hearth.studies.films_to_judge import JudgedFilm, read_films
 from hearth.studies.judged_film_recording import film_path
 from hearth.studies.participant_flags import came as came_by
@@ -32,11 +34,11 @@ from hearth.studies.study_progress import (
 from hearth.web import play
 from hearth.web.phrases import say
 from hearth.web.room_request import Visit, Web, by_browser
-from hearth.web.sender_addresses import sender_of
+from hearth.web.sender_addresses import is_of_lab, sender_of
 from hearth.web.study.expected_posts import UNASKED, check_answers, in_turn, unasked_line
 from hearth.web.study.places_per_address import HELD, is_stranger
 from hearth.web.study.study_store import FOLDER, conducted
-from hearth.web.study.study_trial_games import begun, gone_on
+from hearth.web.study.study_trial_games import begun, gone_on, is_begun
 from hearth.web.web_errors import WebError
 
 TEMPLATES = {
@@ -45,6 +47,9 @@ TEMPLATES = {
 }  # fmt: skip
 """The page of every stage; films have their own."""
 
+
+CAME = "hearth_came"
+"""The cookie with the ids of a platform's link; it goes when the browser is closed."""
 
 ANSWER = "answer-"
 """Beginning of an answer's field; the name of its question follows."""
@@ -84,19 +89,43 @@ def way(visit: Visit) -> Response:
         return visit.page("study/none.html")
     conduct = conduct_here(visit.web)
     standing = _here(visit, conduct)
+    if standing is None and visit.fields.get("no") == "yes":
+        return visit.page("study/declined.html", study=conduct.study)
     if standing is None and not conduct.has_room():
         return visit.page("study/full.html", study=conduct.study)
     if standing is None:
-        return _consent_page(visit, conduct.study, _note(visit, conduct.study, None))
+        return _consent_page(visit, conduct, _note(visit, conduct.study, None))
     return shown(visit, conduct, standing)
 
 
-def _consent_page(visit: Visit, study: Study, note: str) -> Response:
-    """Return the page that asks for consent; its form keeps what the link of a platform said."""
-    came = {} if study.recruitment is None else study.recruitment.came(visit.fields)
+def _consent_page(visit: Visit, conduct: Conduct, note: str) -> Response:
+    """Return the page that asks for consent; its form, and a cookie, keep what the link of a platform said.
+
+    The cookie is for a person who loses this page: nothing is recorded before consent, and the ids are not lost.
+    """
+    study = conduct.study
+    came = {} if study.recruitment is None else study.recruitment.came(visit.fields) or _kept(visit, study)
     if study.recruitment is not None and not all(map(is_id, came.values())):
         note, came = say("study", "link_damaged", platform=study.recruitment.title), {}
-    return visit.page("study/consent.html", study=study, note=note, came=came)
+    if not note and came and study.recruitment is not None:
+        person = came[study.recruitment.parameters[0]]
+        note = say("study", "same_link") if _has_come(conduct, person, visit.person) else ""
+    answer = visit.page("study/consent.html", study=study, note=note, came=came)
+    if came:
+        answer.set_cookie(CAME, urlencode(came), httponly=True, samesite="lax", secure=visit.web.secure, path="/study")
+    return answer
+
+
+def _kept(visit: Visit, study: Study) -> dict[str, str]:
+    """Return what the link of a platform said when this browser opened it."""
+    assert study.recruitment is not None
+    return study.recruitment.came(dict(parse_qsl(visit.request.cookies.get(CAME, "")[:1_000])))
+
+
+def _has_come(conduct: Conduct, came: str, person: str) -> bool:
+    """Return whether another session takes part, or has, with an id of a platform."""
+    others = (str(each.data["person"]) for each in conduct.ledger.read(PLACES) if each.data["person"] != person)
+    return any(came_by(conduct.standing(other)).get("person") == came for other in others if other)
 
 
 def _note(visit: Visit, study: Study, standing: Standing | None) -> str:
@@ -129,10 +158,11 @@ def shown(
         planned = conduct.condition(standing)
         return visit.page("study/film.html", status, film=film, questions=study.asked(planned), **values)
     if standing.stage == CONSENT:
-        return _consent_page(visit, study, note)
+        return _consent_page(visit, conduct, note)
     helped = standing.stage in (TRIAL, QUESTIONS) and conduct.condition(standing).helped
-    questions = conduct.questions(standing)
-    return visit.page(TEMPLATES[standing.stage], status, questions=questions, helped=helped, **values)
+    has_begun = standing.stage in (PRACTICE, TRIAL) and is_begun(visit.web, conduct, standing)
+    values |= {"questions": conduct.questions(standing), "helped": helped, "started": has_begun}
+    return visit.page(TEMPLATES[standing.stage], status, **values)
 
 
 def _standing(conduct: Conduct, person: str) -> Standing | None:
@@ -148,6 +178,11 @@ def _here(visit: Visit, conduct: Conduct) -> Standing | None:
     if standing is not None and standing.stage in (PRACTICE, TRIAL) and conduct.study.room != JUDGE:
         return gone_on(visit.web, conduct, standing)
     return standing
+
+
+def takes_part(web: Web, person: str) -> bool:
+    """Return whether a person takes part in the study of the server, or has."""
+    return study_here(web) is not None and _standing(conduct_here(web), person) is not None
 
 
 def agree(visit: Visit) -> Response:
@@ -168,6 +203,7 @@ def _came(visit: Visit, study: Study) -> dict[str, str]:
     if study.recruitment is None:
         return {}
     found = study.recruitment.came({name: visit.field(name, 100) for name in study.recruitment.parameters})
+    found = found or _kept(visit, study)
     if wrong := [name for name, given in found.items() if not is_id(given)]:
         raise WebError(Code.BAD_ARGUMENT, wrong[0], "an id of letters and digits", found[wrong[0]][:40])
     person, *_ = study.recruitment.parameters
@@ -181,7 +217,8 @@ def _joined(visit: Visit, conduct: Conduct) -> Standing:
         WebError: TOO_FAST: others of the same address hold as many places as it may.
     """
     address = sender_of(visit.request)
-    if _standing(conduct, visit.person) is not None or not is_stranger(address, visit.web.secure):
+    known = is_of_lab(address, visit.web.lab) or not is_stranger(address, visit.web.secure)
+    if known or _standing(conduct, visit.person) is not None:
         return conduct.join(visit.person)
 
     def under_way(person: str) -> bool:

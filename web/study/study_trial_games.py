@@ -34,6 +34,12 @@ def begun(web: Web, conduct: Conduct, standing: Standing) -> str:
     return web.store.write(begin)
 
 
+def is_begun(web: Web, conduct: Conduct, standing: Standing) -> bool:
+    """Return whether the game of the trial or practice that a person is at has begun: its time runs on."""
+    key = {"session": standing.person, "study": conduct.study.name, "number": len(standing.events)}
+    return web.store.read(lambda connection: connection.execute(_query(key)).scalar()) is not None
+
+
 def _query(key: dict[str, Any]) -> sql.Select[Any]:
     conditions = [TRIAL_GAMES.c[name] == value for name, value in key.items()]
     return sql.select(TRIAL_GAMES.c.game).where(*conditions)

@@ -1,5 +1,9 @@
 // Blockly: an action is a block with slots, a thing fits only into slots whose action can be done to it.
 
+import PHRASES from "/phrases.js";
+
+const NARROW = innerWidth < 700; // then the drawers stand above the program
+
 const HUES = {
   "Go": "#3b6fb6", "Sit, lie, stand": "#7a5ca8", "Take and put": "#b0661f", "Open and switch": "#2f7d57",
   "Dress": "#a8487a", "Look": "#4d7f8c", "By hand": "#8a6d1c", "Other": "#6b6b6b",
@@ -41,11 +45,12 @@ function define(model) {
   for (const action of model.actions.values()) {
     made.push({
       type: typeOf(action.name),
-      message0: action.words.replace(/\{(\d)\}/g, (_, slot) => `%${Number(slot) + 1}`),
+      message0: action.words.replace(/\{(\d)\}/g, (_, slot) => `%${Number(slot) + 1}`)
+        + (action.runs ? "" : ` ${PHRASES.annotate.cannot_run}`),
       args0: action.slots.map((slot, number) => ({ type: "input_value", name: `S${number}`, check: slot })),
       inputsInline: true, previousStatement: null, nextStatement: null,
       colour: HUES[action.drawer] ?? HUES.Other,
-      tooltip: action.runs ? "" : "It can be written, but not run.",
+      tooltip: action.runs ? "" : PHRASES.annotate.cannot_run_note,
     });
   }
   for (const thing of model.things) {
@@ -90,7 +95,7 @@ function asBlocks(steps) {
     if (next) block.next = { block: next };
     next = block;
   }
-  return { type: "start", x: 260, y: 24, deletable: false, movable: false, ...(next ? { next: { block: next } } : {}) };
+  return { type: "start", x: NARROW ? 12 : 260, y: NARROW ? 96 : 24, deletable: false, movable: false, ...(next ? { next: { block: next } } : {}) };
 }
 
 function chain(workspace) {
@@ -128,7 +133,9 @@ export function mount(element, model, changed, loose) {
   define(model);
   const workspace = withAdoptedStyles(() => Blockly.inject(element, {
     toolbox: toolbox(model), media: "/fetched/blockly/media/", renderer: "zelos", theme: theme(), sounds: false,
-    trashcan: true, scrollbars: true, zoom: { controls: false, wheel: false, startScale: 0.8 }, maxTrashcanContents: 0,
+    trashcan: true, scrollbars: true, zoom: { controls: false, wheel: false, startScale: NARROW ? 0.7 : 0.8 },
+    maxTrashcanContents: 0, horizontalLayout: NARROW,
+    collapse: false, comments: false, disable: false, // the program has no place for these
   }));
   let last = "";
   let later = 0;
@@ -160,7 +167,7 @@ export function mount(element, model, changed, loose) {
       }
       chain(workspace).forEach((block, number) => {
         const mine = found.filter((each) => each.step === number);
-        const text = mine.map((each) => each.message).join("\n");
+        const text = mine.map((each) => (each.remedy ? `${each.message}: ${each.remedy}` : each.message)).join("\n");
         if ((marked.get(block) ?? "") !== text) block.setWarningText(text || null);
         marked.set(block, text);
         block.getSvgRoot().classList.toggle("faulty", mine.some((each) => each.fault));

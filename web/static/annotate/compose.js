@@ -1,9 +1,10 @@
 // The page on which a program is written: one list of steps, shown as blocks and as a list with a form.
+import PHRASES from "/phrases.js";
 import { mount } from "./blocks.js";
+import { byId, element, mark, phrased, tool } from "./pieces.js";
 import { player } from "./player.js";
 
 const [SAVE_AFTER, AGAIN] = [250, 1000];
-const byId = (id) => document.getElementById(id);
 const composer = byId("composer");
 const base = composer.dataset.base;
 
@@ -12,13 +13,9 @@ let blocks = null;
 let timer = 0;
 let again = AGAIN; // milliseconds until a save that had no answer is tried again
 let saving = Promise.resolve();
-
-function element(name, text, className) {
-  const made = document.createElement(name);
-  if (text !== undefined && text !== null) made.textContent = text;
-  if (className) made.className = className;
-  return made;
-}
+let changing = -1; // the number of the step that the form changes, or -1
+const past = []; // steps before each change, for Undo
+const ahead = []; // steps that were undone, for Redo
 
 async function ask(path, body) {
   const options = body === undefined ? {} : {
@@ -27,8 +24,8 @@ async function ask(path, body) {
   const answer = await fetch(base + path, options);
   const value = await answer.json();
   if (!answer.ok) {
-    const { code, place, expected, actual } = value.error;
-    throw Object.assign(new Error(`${place}: ${actual || code}; expected ${expected}`), { value, code });
+    const { code } = value.error;
+    throw Object.assign(new Error(value.words ?? PHRASES.refused[code] ?? PHRASES.refused.other), { value, code });
   }
   return value;
 }
@@ -53,13 +50,43 @@ function say(text, bad) {
 // ------------------------------------------------------------------ changes
 
 function changed(steps, from) {
+  if (from !== "undo") {
+    past.push(model.steps);
+    ahead.length = 0;
+  }
   model.steps = steps;
   model.found = [];
+  forgotten();
+  leaveStep();
   draw();
   if (blocks && from !== "blocks") blocks.show(steps);
   clearTimeout(timer);
-  say("Saving …");
+  say(phrased("saving"));
   timer = setTimeout(save, SAVE_AFTER);
+}
+
+// What was said about the program as it was.
+function forgotten() {
+  byId("undo").disabled = !past.length;
+  byId("redo").disabled = !ahead.length;
+  byId("refused").replaceChildren();
+  byId("sure-row").hidden = true;
+  byId("result").replaceChildren();
+  byId("stage").hidden = true;
+}
+
+function back(from, to) {
+  if (!from.length) return;
+  to.push(model.steps);
+  changed(from.pop(), "undo");
+}
+
+function keys(event) {
+  const inText = event.target.closest("input, textarea, #blocks"); // these have an undo of their own
+  if (inText || !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z") return;
+  event.preventDefault();
+  if (event.shiftKey) back(ahead, past);
+  else back(past, ahead);
 }
 
 // What the server refuses now and not later.
@@ -77,7 +104,7 @@ function save() {
       if (steps === model.steps) checked(found);
     } catch (error) {
       if (error.code === "LOCKED") await otherTab().catch(() => later());
-      else if (error.code && !LATER.includes(error.code)) say(`Not saved. ${error.message}.`, true);
+      else if (error.code && !LATER.includes(error.code)) say(phrased("not_saved", { why: error.message }), true);
       else later();
     }
   });
@@ -86,7 +113,7 @@ function save() {
 
 // No answer, or too many questions: what is written stays here, and is saved as soon as that is possible.
 function later() {
-  say("Not saved yet: the server can't be reached. It is tried again; keep this page open.", true);
+  say(phrased("no_answer"), true);
   clearTimeout(timer);
   timer = setTimeout(save, again);
   again = Math.min(2 * again, 30_000);
@@ -96,15 +123,15 @@ function later() {
 async function otherTab() {
   const { version, steps, changes } = await ask("/work");
   if (!changes) {
-    say("Not saved: this program was handed in from another tab.", true);
+    say(phrased("gone"), true);
     return;
   }
-  say("Not saved: another tab has changed this program since. ", true);
-  const mine = tool("Keep what is here", "Keep what is here", () => {
+  say(phrased("other_tab"), true);
+  const mine = tool(phrased("keep_mine"), phrased("keep_mine"), () => {
     model.version = version;
     save();
   });
-  const other = tool("Take what the other tab has", "Take what the other tab has", () => {
+  const other = tool(phrased("take_other"), phrased("take_other"), () => {
     model.version = version;
     changed(steps, "other tab");
   });
@@ -115,28 +142,13 @@ function checked(found) {
   model.found = found;
   const faults = found.filter((each) => each.fault).length;
   const mended = composer.dataset.mode === "mend";
-  const kept = mended ? "Checked; nothing is kept before you accept." : "Saved.";
-  say(faults ? `${kept} Faults: ${faults}.` : `${kept} No faults.`);
+  const kept = phrased(mended ? "checked" : "saved");
+  say(`${kept} ${faults ? phrased("faults", { count: faults }) : phrased("ready")}`);
   draw();
   if (blocks) blocks.mark(found);
 }
 
 // ------------------------------------------------------------------ the list
-
-function mark(each) {
-  const shown = element("span", each.remedy ? `${each.message}: ${each.remedy}` : each.message, each.fault ? "fault" : "note");
-  shown.dataset.code = each.code;
-  return shown;
-}
-
-function tool(text, label, work, disabled) {
-  const button = element("button", text, "plain tool");
-  button.type = "button";
-  button.ariaLabel = label;
-  button.disabled = Boolean(disabled);
-  button.addEventListener("click", work);
-  return button;
-}
 
 function moved(from, to) {
   const steps = [...model.steps];
@@ -147,14 +159,14 @@ function moved(from, to) {
 
 function removed(number) {
   changed(model.steps.filter((_, other) => other !== number), "list");
-  if (model.steps.length) focusOn(Math.min(number, model.steps.length - 1), 2);
+  if (model.steps.length) focusOn(Math.min(number, model.steps.length - 1), -1);
   else byId("action").focus();
 }
 
 function focusOn(number, which) {
   const tools = byId("steps").children[number].querySelectorAll("button");
-  const wanted = tools[which].disabled ? tools[1 - which] ?? tools[which] : tools[which];
-  wanted.focus();
+  const wanted = which < 0 ? tools[tools.length - 1] : tools[which];
+  (wanted.disabled ? tools[1 - which] ?? wanted : wanted).focus();
 }
 
 function row(step, number) {
@@ -165,6 +177,7 @@ function row(step, number) {
   tools.append(
     tool("↑", `Move step ${number + 1} up: ${text}`, () => moved(number, number - 1), number === 0),
     tool("↓", `Move step ${number + 1} down: ${text}`, () => moved(number, number + 1), number === model.steps.length - 1),
+    ...("special" in step ? [] : [tool("✎", phrased("change_step", { number: number + 1, step: text }), () => changeStep(number))]),
     tool("×", `Take step ${number + 1} out: ${text}`, () => removed(number)),
   );
   line.append(tools, ...model.found.filter((each) => each.step === number).map(mark));
@@ -196,7 +209,7 @@ function fillActions() {
       continue;
     }
     if (!drawers.has(action.drawer)) drawers.set(action.drawer, element("optgroup"));
-    const option = element("option", action.words.replace(/\{\d\}/g, "…") + (action.runs ? "" : " (can't be run)"));
+    const option = element("option", action.words.replace(/\{\d\}/g, "…") + (action.runs ? "" : ` ${phrased("cannot_run")}`));
     option.value = action.name;
     drawers.get(action.drawer).append(option);
   }
@@ -212,11 +225,16 @@ function distinct(action) {
   return new Set(action.slots.flatMap((slot) => fitting(slot))).size >= action.slots.length;
 }
 
+// “Put … in …”, with the slot that is meant.
+function slotLabel(action, number) {
+  return action.words.replace(/\{(\d)\}/g, (_, slot) => (Number(slot) === number ? "▢" : "…"));
+}
+
 function fillSlots() {
   const action = model.actions.get(byId("action").value);
   byId("slots").replaceChildren(...(action ? action.slots : []).map((slot, number) => {
     const line = element("p");
-    const label = element("label", `Thing ${number + 1}: ${action.roles[number]}`);
+    const label = element("label", slotLabel(action, number));
     const select = element("select");
     select.id = `slot-${number}`;
     label.htmlFor = select.id;
@@ -236,10 +254,36 @@ function added(event) {
   if (!action) return;
   const things = [...byId("slots").querySelectorAll("select")].map((select) => JSON.parse(select.value));
   if (new Set(things.map(String)).size < things.length) {
-    say("A step takes different things.", true);
+    say(phrased("different"), true);
     return;
   }
-  changed([...model.steps, { action, things }], "form");
+  const made = { action, things };
+  changed(changing < 0 ? [...model.steps, made] : model.steps.map((step, number) => (number === changing ? made : step)), "form");
+}
+
+// Take a step into the form, to change it.
+function changeStep(number) {
+  const { action, things } = model.steps[number];
+  if (![...byId("action").options].some((option) => option.value === action)) return; // no thing of the scene fits it now
+  show("list");
+  changing = number;
+  byId("action").value = action;
+  fillSlots();
+  things.forEach((ref, slot) => { if (ref) byId(`slot-${slot}`).value = JSON.stringify(ref); });
+  formFor(number);
+  byId("action").focus();
+}
+
+function leaveStep() {
+  if (changing >= 0) formFor(-1);
+  changing = -1;
+}
+
+function formFor(number) {
+  byId("form-title").textContent = number < 0 ? phrased("new_step") : phrased("changing", { number: number + 1 });
+  byId("add-step").querySelector("button").hidden = number >= 0;
+  byId("keep-step").hidden = number < 0;
+  byId("leave-step").hidden = number < 0;
 }
 
 function addedSpecial(event) {
@@ -254,16 +298,16 @@ function addedSpecial(event) {
 
 async function run() {
   await (timer ? save() : saving);
-  byId("result").replaceChildren(element("p", "Running …"));
+  byId("result").replaceChildren(element("p", phrased("running")));
   byId("stage").hidden = true;
   try {
     const result = await ask("/run", { steps: model.steps, home: byId("home").value });
     const ran = element("p", result.ran
-      ? `Every step can be done in ${result.home}.${result.added ? " Things that the home lacks were added." : ""}`
-      : `It does not run in ${result.home}. ${result.why}`, result.ran ? "good" : "fault");
+      ? `${phrased("ran", result)}${result.added ? ` ${phrased("added")}` : ""}`
+      : phrased("stopped", result), result.ran ? "good" : "fault");
     byId("result").replaceChildren(ran);
     if (!result.ran && result.step >= 0) {
-      const at = { step: result.step, fault: false, code: "RUN", message: `stops here: ${result.why}`, remedy: "" };
+      const at = { step: result.step, fault: false, code: "RUN", message: phrased("stops_here", result), remedy: "" };
       model.found = [...model.found.filter((each) => each.code !== "RUN"), at];
       draw();
       if (blocks) blocks.mark(model.found);
@@ -271,17 +315,22 @@ async function run() {
     const sent = { steps: model.steps, home: byId("home").value };
     if (result.ticks.length) await player(byId("stage"), result, (number) => phrase(model.steps[number]), () => ask("/replay", sent));
   } catch (error) {
-    byId("result").replaceChildren(element("p", `It can't be run. ${error.message}`, "fault"));
+    byId("result").replaceChildren(element("p", phrased("no_run", { why: error.message }), "fault"));
   }
 }
 
-async function submit() {
+async function submit(sure) {
   await (timer ? save() : saving);
+  byId("sure-row").hidden = true;
+  byId("refused").replaceChildren();
   try {
-    const { go } = await ask("/submit", { version: model.version, steps: model.steps });
-    location.assign(go);
+    const sent = { version: model.version, steps: model.steps, home: byId("home").value, sure };
+    const answer = await ask("/submit", sent);
+    if (answer.go) location.assign(answer.go);
+    else byId("refused").replaceChildren(element("p", answer.ask, "note"));
+    byId("sure-row").hidden = Boolean(answer.go);
   } catch (error) {
-    byId("refused").replaceChildren(element("p", `It can't be handed in yet. ${error.message}`, "fault"));
+    byId("refused").replaceChildren(element("p", phrased("no_hand_in", { why: error.message }), "fault"));
     if (error.value?.found) checked(error.value.found);
   }
 }
@@ -316,7 +365,13 @@ async function begin() {
   byId("add-step").addEventListener("submit", added);
   byId("add-special").addEventListener("submit", addedSpecial);
   byId("run").addEventListener("click", run);
-  byId("submit").addEventListener("click", submit);
+  byId("submit").addEventListener("click", () => submit(false));
+  byId("sure").addEventListener("click", () => submit(true));
+  byId("undo").addEventListener("click", () => back(past, ahead));
+  byId("redo").addEventListener("click", () => back(ahead, past));
+  byId("keep-step").addEventListener("click", added);
+  byId("leave-step").addEventListener("click", leaveStep);
+  document.addEventListener("keydown", keys);
   byId("show-blocks").addEventListener("click", () => show("blocks"));
   byId("show-list").addEventListener("click", () => show("list"));
   if (!window.Blockly) {
