@@ -39,13 +39,24 @@ def parameters_of(text: str) -> dict[str, str]:
 def _operator_texts(text: str) -> dict[str, str]:
     """Return the text of each whole operator of an answer, without its name."""
     found = json_answer_of(text)
-    body = str(found["output"]) if isinstance(found, dict) and "output" in found else unfenced(text)
+    body = _joined(found["output"]) if isinstance(found, dict) and "output" in found else unfenced(text)
     body = re.sub(r"\s+", " ", re.sub(r";.*$", "", body, flags=re.MULTILINE))
     places = list(re.finditer(r"\(:action\s+(\w+)", body))
     ends = [place.start() for place in places[1:]] + [len(body)]
     parts = {place[1]: body[place.end() : end] for place, end in zip(places, ends, strict=False)}
     needed = (":parameters", ":precondition", ":effect")
     return {name: part for name, part in parts.items() if all(word in part for word in needed)}
+
+
+def _joined(output: Any) -> str:
+    """Return the text of an answer's `output`; lines of a list are joined."""
+    return " ".join(map(str, output)) if isinstance(output, list) else str(output)
+
+
+def left_out(text: str) -> bool:
+    """Return whether the interface leaves an answer out of its counts: the `output` is JSON, but no text."""
+    found = json_answer_of(text)
+    return isinstance(found, dict) and not isinstance(found.get("output", ""), str)
 
 
 def _block(text: str, word: str) -> str:
@@ -224,13 +235,13 @@ class Operators:
 
     def judged(self, answer: Answer) -> tuple[Counts, Counts]:
         """Return the counts of an answer by the interface's rules, and by ours, where a missing operator is missed."""
-        operators = operators_of(answer.text)
+        operators, skipped = operators_of(answer.text), left_out(answer.text)
         theirs = ours = Counts()
         for name in self.asked.get(answer.task, ()):
             gold, found = self.gold[name], operators.get(name)
             for number in range(2):
                 text = "()" if found is None else found[number]
                 ours = ours.plus(compared(text, gold[number], self.known))
-                if found is not None:
+                if found is not None and not skipped:
                     theirs = theirs.plus(compared_as_scored(text, gold[number], self.known))
         return theirs, ours

@@ -116,6 +116,8 @@ def test_operators_are_read_as_earlier_planners_read_them():
     )  # fmt: skip
     bound = "(exists (?r - object) (inside ?o ?r))"
     assert repaired("(?o)", bound, "(held ?o)") == ("(?o)", bound, "(held ?o)")
+    for condition in ("(inside ?o ?room - object)", "((near ?o) (near ?any))", "(and ((near ?any)))"):
+        assert repaired("(?o)", condition, condition)[1:] == (condition, condition)
     assert repaired("(?o", "(a)", "(b)") == ("(?o", "(a)", "(b)")
     assert list(names_in(read("(and (inside ?c bathroom) (forall (?x - object) (near ?x sink)))"))) == [
         "bathroom", "sink",
