@@ -87,7 +87,7 @@ def _read(words: Iterator[str], depth: int) -> list[Expression]:
     for word in words:
         if word == "(":
             inner = _read(words, depth + 1)
-            operator = inner[:1] and inner[0] in ("and", "or", "not", "when", "forall", "exists")
+            operator = inner[:1] and inner[0] in PARTS
             plain = all(isinstance(each, str) for each in inner)
             found.append(" ".join(map(str, inner)) if plain and not operator else tuple(inner))
         elif word == ")":
@@ -145,11 +145,13 @@ def compared_as_scored(found: str, gold: str, known: Mapping[str, str]) -> Count
 
     They differ in four ways. A single literal never matches one within `and`. Variables are renamed only between parts
     of the same place. A part counts as wrong, though it matches, if no part matches the gold's part of *its* place. An
-    answer that is not bracketed rightly counts nothing at all.
+    answer that is not bracketed rightly, or has another word than `and` before its parts, counts nothing at all.
     """
     try:
         one, other = whole(found), whole(gold)
     except ValueError:
+        return Counts()
+    if not _well_formed(one):
         return Counts()
     one, other = _aligned(one, other)
     if not (_operator(one) == _operator(other) and _operator(one) in ("and", "or")):
@@ -178,6 +180,18 @@ def whole(text: str) -> Expression:
     if len(found) != 1:
         raise ValueError("several expressions")
     return found[0] or "()"
+
+
+PARTS = {"and": None, "or": None, "not": 2, "when": 3, "forall": 3, "exists": 3}
+"""Operators with their number of parts, themselves included; None for any number."""
+
+
+def _well_formed(expression: Expression) -> bool:
+    """Return whether each list that holds lists begins with an operator, and has its number of parts."""
+    if isinstance(expression, str):
+        return True
+    head = expression[0] if expression and isinstance(expression[0], str) else ""
+    return head in PARTS and PARTS[head] in (None, len(expression)) and all(map(_well_formed, expression[1:]))
 
 
 def _operator(expression: Expression) -> str:

@@ -11,8 +11,8 @@ import numpy as np
 
 from hearth.rendering.annotations import camera_of
 from hearth.rendering.arrays import Image
-from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
-from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
+from hearth.rendering.cameras.camera import Camera, look_at, top_view
+from hearth.rendering.cameras.viewpoints import behind, bulky, home_box, room_views
 from hearth.rendering.film.execution_keyframes import Trajectory
 from hearth.rendering.film.execution_pictures import AUTO, TOP
 from hearth.rendering.film.film_moments import room_at
@@ -134,6 +134,7 @@ class CameraSelector:
             known_names = ", ".join((*VIEWS, *sorted(fixed)[:3], "..."))
             raise HearthError.of(Code.NOT_RENDERED, f"no camera `{view}`", suggestion=known_names)
         self.fixed = fixed.get(view)
+        self.furniture = bulky(home)
         self.room = 0
 
     @cached_property
@@ -159,7 +160,7 @@ class CameraSelector:
             return first_person(actor, self.size)
         # In a doorway no room contains the position: the camera stays.
         self.room = room_at(self.rooms, actor.spot) or self.room or actor.room
-        return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(self.room))
+        return behind(THIRD, actor, frame.scene, self.size, self.rooms.get(self.room), self.furniture)
 
 
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
