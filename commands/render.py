@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -70,13 +71,13 @@ def program(
     execution = _execution(program, Home.from_graph(scene, home, known), seed, own=own)
     changes = _changes(scene, home, execution, known)
     place = with_geometry(scene, home, known)
-    out.mkdir(parents=True, exist_ok=True)
     title, size = f"{execution.program.title}, in {home}", (width, _height(width, mode))
     shooting = Shooting(execution, place.graph, known, out, size, seed, hour, title, vary)
-    if mode == "video":
-        made = videos(shooting, _split(cameras), fps, "fine" if fine else "draft", _split(modalities or "rgb"))
-    else:
-        made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities or "rgb,instance_ids"))
+    with _folder(out):
+        if mode == "video":
+            made = videos(shooting, _split(cameras), fps, "fine" if fine else "draft", _split(modalities or "rgb"))
+        else:
+            made = _snapshots(shooting, "fine" if fine else "draft", _split(modalities or "rgb,instance_ids"))
     failure = in_program(execution.failure, execution.program) if execution.failure else None
     if as_json:
         facts = {"program": execution.program.title, "home": home, "failure": failure, "layout_made": place.made,
@@ -85,6 +86,19 @@ def program(
     else:
         _say(made, failure, changes, place.note(home), f"{made['pictures']} pictures of {file.name} in {out}")
     output.status(failure is not None, strict=True)
+
+
+@contextmanager
+def _folder(out: Path) -> Iterator[None]:
+    """Make a folder for pictures; one that was made here and is empty goes again if they are refused."""
+    new = not out.exists()
+    out.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except HearthError:
+        if new and not any(out.iterdir()):
+            out.rmdir()
+        raise
 
 
 def _scene(home: str, graph: Path | None, homes: Path | None, known: Knowledge) -> tuple[str, EnvironmentGraph]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 from hearth.interop.eai import action_sequencing, goal_interpretation, subgoal_decomposition
 from hearth.interop.eai.goal_interpretation import Counts
 from hearth.interop.eai.operator_planning import OperatorPlanning
+from hearth.interop.eai.subgoal_decomposition import outcomes
 from hearth.interop.eai.transition_modelling import Operators
 from hearth.interop.eai.wheel import ABILITIES, Wheel
 from hearth.kb.knowledge import Knowledge
@@ -24,7 +25,11 @@ NEAR = 1.0
 """Points by which a figure may differ from the published one."""
 
 Row = dict[str, Any]
-"""A model's figure in an ability: `model`, `ability`, `measure`, `published`, `theirs`, `ours`, `agrees`."""
+"""A model's figure in an ability: `model`, `ability`, `measure`, `published`, `theirs`, `ours`, `agrees`.
+
+A figure of subgoals that differs from the published one has `low` and `high`, which it takes by the choices that the
+interface leaves to chance, and `by_chance`, the tasks whose verdict depends on them.
+"""
 
 
 @cache
@@ -88,14 +93,31 @@ def _figures(wheel: Wheel, knowledge: Knowledge, model: str, ability: str) -> It
     elif ability == "subgoal_decomposition":
         found_subgoals = [subgoal_decomposition.judged(wheel, each, knowledge) for each in answers]
         success, execution, own_success, own_runs = subgoal_decomposition.shares(found_subgoals)
-        yield _row(model, ability, "success", "subgoal_success", success, own_success)
-        yield _row(model, ability, "execution", "subgoal_execution", execution, own_runs)
+        rows = [_row(model, ability, "success", "subgoal_success", success, own_success),
+                _row(model, ability, "execution", "subgoal_execution", execution, own_runs)]  # fmt: skip
+        if any(row["agrees"] is False for row in rows):
+            _add_chances(rows, {each.task: outcomes(wheel, each, knowledge) for each in answers})
+        yield from rows
     elif ability == "transition_modeling":
         operators, theirs_sum, ours_sum = Operators(wheel), Counts(), Counts()
         for each in answers:
             one, other = operators.judged(each)
             theirs_sum, ours_sum = theirs_sum.plus(one), ours_sum.plus(other)
         yield from _scores(model, ability, "transition_f1", theirs_sum, ours_sum)
+
+
+def _add_chances(rows: list[Row], by_task: Mapping[str, set[tuple[bool, bool]]]) -> None:
+    """Add to success and execution of subgoals their range over the interface's choices by chance, and the tasks.
+
+    Args:
+        rows: of success, then of execution.
+        by_task: execution and success for each choice.
+    """
+    for row, place in zip(rows, (1, 0), strict=True):
+        found = {task: {each[place] for each in verdicts} for task, verdicts in by_task.items()}
+        low, high = (100 * sum(fit(verdicts) for verdicts in found.values()) / len(found) for fit in (all, any))
+        row |= {"low": round(low, 2), "high": round(high, 2),
+                "by_chance": [task for task, verdicts in found.items() if len(verdicts) > 1]}  # fmt: skip
 
 
 def _scores(model: str, ability: str, column: str, theirs: Counts, ours: Counts) -> Iterator[Row]:

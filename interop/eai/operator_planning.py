@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from hearth.interop.eai.operator_repair import names_in, read, repaired, with_constants
-from hearth.interop.eai.transition_modelling import operators_of, parameters_of
+from hearth.interop.eai.transition_modelling import left_out, operators_of, parameters_of
 from hearth.interop.eai.wheel import RESOURCES, Answer, Wheel
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -62,11 +62,12 @@ class OperatorPlanning:
         self.folder = planner_folder()
 
     def planned(self, answer: Answer) -> Outcome | None:
-        """Return whether the planner solves a task with an answer's operators; None for a task without a problem.
+        """Return whether the planner solves a task with an answer's operators.
 
-        Actions that the answer lacks are the gold ones.
+        Actions that the answer lacks are the gold ones. It is None for a task without a problem, and for an answer that
+        the interface leaves out.
         """
-        if answer.task not in self.tasks:
+        if answer.task not in self.tasks or left_out(answer.text):
             return None
         name = "_".join(self.titles[answer.task].split())
         problem = self.wheel.bytes_of(f"{RESOURCES}problem_pddl/{name}/{answer.task}.pddl").decode()

@@ -73,13 +73,21 @@ def _bound(expression: list[Any]) -> set[str]:
 
 
 def _free(literal: list[Any], known: set[str]) -> bool:
-    """Return whether a literal has a variable that is not declared."""
+    """Return whether a literal has a variable that is not declared.
+
+    A list with a type, `(inside ?c ?room - object)`, is no literal; it stays as it is, for the planner to refuse.
+    """
+    if "-" in literal:
+        return False
     return any(isinstance(word, str) and word.startswith("?") and word not in known for word in literal)
 
 
 def _condition(expression: Expression, known: set[str]) -> Expression:
-    """Return a condition in which facts about undeclared variables are never true."""
-    if isinstance(expression, str) or not expression:
+    """Return a condition in which facts about undeclared variables are never true.
+
+    A list that begins with a list is no condition; it stays as it is, for the planner to refuse.
+    """
+    if isinstance(expression, str) or not expression or not isinstance(expression[0], str):
         return expression
     if expression[0] not in JOINS:
         return [NEVER] if _free(expression, known) else expression

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from enum import StrEnum
-from itertools import product
+from itertools import islice, product
 from typing import NamedTuple
 
 from hearth.interop.eai.action_sequencing import Fault, fault_of
@@ -27,6 +27,9 @@ MOST_BRANCHES = 256
 
 MOST_CHOICES = 16
 """Choices among the parts of `or` that are tried by ours."""
+
+MOST_CHANCES = 64
+"""Choices among the parts of `or` that are tried by the interface's rules."""
 
 ALONE = ("SLEEP", "WAKEUP", "STANDUP")
 """Acts without arguments, which may stand without brackets."""
@@ -58,31 +61,50 @@ class Verdict(NamedTuple):
 
 
 def judged(wheel: Wheel, answer: Answer, knowledge: Knowledge) -> Verdict:
-    """Return the verdict on an answer."""
+    """Return the verdict on an answer; of the parts of `or` the interface's rules then take the first."""
     there = task_world(wheel, answer.task, knowledge)
     subgoals = subgoals_of(answer.text)
     runs, reaches = _by_ours(there, subgoals or [], knowledge)
-    read = Unread.PARSING if subgoals is None else _as_scored(subgoals, there)
-    if isinstance(read, Unread):
-        return Verdict(answer.task, False, False, runs, reaches, str(read))
-    goal = there.task.record.get("tl_goal")
-    if not goal:
-        return Verdict(answer.task, False, False, runs, reaches, str(Unread.PARSING))
-    wanted = read_formula(goal)
-    found, faults = _runs(there, read, knowledge)
-    succeeds = any(fulfilled(wanted, done) for done in found)
-    return Verdict(answer.task, bool(found), succeeds, runs, reaches, "" if found else str(faults[0]))
+    executed, succeeds, fault = next(_by_theirs(there, subgoals, knowledge))
+    return Verdict(answer.task, executed, succeeds, runs, reaches, fault)
 
 
-def _as_scored(subgoals: Sequence[str], there: TaskWorld) -> list[Atom] | Unread:
-    """Return the subgoals one after the other as the interface reads them.
+def outcomes(wheel: Wheel, answer: Answer, knowledge: Knowledge) -> set[tuple[bool, bool]]:
+    """Return execution and success by the interface's rules for every choice among the parts of `or`.
 
-    It passes over texts without brackets, takes one part of `or` by chance (the first here), and cannot read negations.
+    The interface chooses by chance. Of more than 64 choices the first 64 are tried.
     """
-    kept = [f"{each}()" if each in ALONE else each.split(" or ")[0] for each in subgoals
+    there = task_world(wheel, answer.task, knowledge)
+    found = _by_theirs(there, subgoals_of(answer.text), knowledge)
+    return {(executed, succeeds) for executed, succeeds, _ in islice(found, MOST_CHANCES)}
+
+
+def _by_theirs(
+    there: TaskWorld, subgoals: Sequence[str] | None, knowledge: Knowledge
+) -> Iterator[tuple[bool, bool, str]]:
+    """Yield execution, success and fault for each choice among the parts of `or`, that of all first parts first."""
+    goal = there.task.record.get("tl_goal")
+    for chosen in [None] if subgoals is None else _chances(subgoals):
+        read = Unread.PARSING if chosen is None else _as_scored(chosen, there)
+        if isinstance(read, Unread) or not goal:
+            yield False, False, str(read if isinstance(read, Unread) else Unread.PARSING)
+            continue
+        found, faults = _runs(there, read, knowledge)
+        wanted = read_formula(goal)
+        yield bool(found), any(fulfilled(wanted, done) for done in found), "" if found else str(faults[0])
+
+
+def _chances(subgoals: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Yield the subgoals with one part of each `or`; texts without brackets are passed over."""
+    kept = [[f"{each}()"] if each in ALONE else each.split(" or ") for each in subgoals
             if each in ALONE or re.search(r"\w+\(.*?\)", each)]  # fmt: skip
+    yield from product(*kept)
+
+
+def _as_scored(chosen: Sequence[str], there: TaskWorld) -> list[Atom] | Unread:
+    """Return the subgoals one after the other as the interface reads them. It cannot read negations."""
     try:
-        formula = read_formula(" then ".join(kept))
+        formula = read_formula(" then ".join(chosen))
     except ValueError:
         return Unread.PARSING
     atoms = atoms_of(formula)

@@ -39,13 +39,24 @@ def parameters_of(text: str) -> dict[str, str]:
 def _operator_texts(text: str) -> dict[str, str]:
     """Return the text of each whole operator of an answer, without its name."""
     found = json_answer_of(text)
-    body = str(found["output"]) if isinstance(found, dict) and "output" in found else unfenced(text)
+    body = _joined(found["output"]) if isinstance(found, dict) and "output" in found else unfenced(text)
     body = re.sub(r"\s+", " ", re.sub(r";.*$", "", body, flags=re.MULTILINE))
     places = list(re.finditer(r"\(:action\s+(\w+)", body))
     ends = [place.start() for place in places[1:]] + [len(body)]
     parts = {place[1]: body[place.end() : end] for place, end in zip(places, ends, strict=False)}
     needed = (":parameters", ":precondition", ":effect")
     return {name: part for name, part in parts.items() if all(word in part for word in needed)}
+
+
+def _joined(output: Any) -> str:
+    """Return the text of an answer's `output`; lines of a list are joined."""
+    return " ".join(map(str, output)) if isinstance(output, list) else str(output)
+
+
+def left_out(text: str) -> bool:
+    """Return whether the interface leaves an answer out of its counts: the `output` is JSON, but no text."""
+    found = json_answer_of(text)
+    return isinstance(found, dict) and not isinstance(found.get("output", ""), str)
 
 
 def _block(text: str, word: str) -> str:
@@ -76,7 +87,7 @@ def _read(words: Iterator[str], depth: int) -> list[Expression]:
     for word in words:
         if word == "(":
             inner = _read(words, depth + 1)
-            operator = inner[:1] and inner[0] in ("and", "or", "not", "when", "forall", "exists")
+            operator = inner[:1] and inner[0] in PARTS
             plain = all(isinstance(each, str) for each in inner)
             found.append(" ".join(map(str, inner)) if plain and not operator else tuple(inner))
         elif word == ")":
@@ -134,11 +145,13 @@ def compared_as_scored(found: str, gold: str, known: Mapping[str, str]) -> Count
 
     They differ in four ways. A single literal never matches one within `and`. Variables are renamed only between parts
     of the same place. A part counts as wrong, though it matches, if no part matches the gold's part of *its* place. An
-    answer that is not bracketed rightly counts nothing at all.
+    answer that is not bracketed rightly, or has another word than `and` before its parts, counts nothing at all.
     """
     try:
         one, other = whole(found), whole(gold)
     except ValueError:
+        return Counts()
+    if not _well_formed(one):
         return Counts()
     one, other = _aligned(one, other)
     if not (_operator(one) == _operator(other) and _operator(one) in ("and", "or")):
@@ -167,6 +180,18 @@ def whole(text: str) -> Expression:
     if len(found) != 1:
         raise ValueError("several expressions")
     return found[0] or "()"
+
+
+PARTS = {"and": None, "or": None, "not": 2, "when": 3, "forall": 3, "exists": 3}
+"""Operators with their number of parts, themselves included; None for any number."""
+
+
+def _well_formed(expression: Expression) -> bool:
+    """Return whether each list that holds lists begins with an operator, and has its number of parts."""
+    if isinstance(expression, str):
+        return True
+    head = expression[0] if expression and isinstance(expression[0], str) else ""
+    return head in PARTS and PARTS[head] in (None, len(expression)) and all(map(_well_formed, expression[1:]))
 
 
 def _operator(expression: Expression) -> str:
@@ -224,13 +249,13 @@ class Operators:
 
     def judged(self, answer: Answer) -> tuple[Counts, Counts]:
         """Return the counts of an answer by the interface's rules, and by ours, where a missing operator is missed."""
-        operators = operators_of(answer.text)
+        operators, skipped = operators_of(answer.text), left_out(answer.text)
         theirs = ours = Counts()
         for name in self.asked.get(answer.task, ()):
             gold, found = self.gold[name], operators.get(name)
             for number in range(2):
                 text = "()" if found is None else found[number]
                 ours = ours.plus(compared(text, gold[number], self.known))
-                if found is not None:
+                if found is not None and not skipped:
                     theirs = theirs.plus(compared_as_scored(text, gold[number], self.known))
         return theirs, ours

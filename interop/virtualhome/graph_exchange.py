@@ -14,12 +14,14 @@ from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.scene.object_boxes import Places
 from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
-from hearth.schemas.graph import Box, EnvironmentGraph, Node, from_release, to_release
+from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release, to_release
 from hearth.schemas.vocabulary import (
     CHARACTER_CATEGORY,
     CHARACTER_CLASS,
     EVERY_STATE_ID,
     OPPOSITE,
+    RELATION_ID,
+    RELATIONS,
     ROOM_CATEGORY,
     STATES,
 )
@@ -29,6 +31,9 @@ MOST_NODES = 20_000
 
 HELD = ("ON", "INSIDE")
 """Relations that say where a thing is."""
+
+IN_HAND = ("HOLDS_RH", "HOLDS_LH")
+"""Relations that say which hand holds a thing."""
 
 
 def unity_graph(graph: EnvironmentGraph, places: Places, actors: Iterable[Actor]) -> dict[str, Any]:
@@ -232,28 +237,37 @@ def _impossible_places(
     now: EnvironmentGraph, wanted: EnvironmentGraph, nodes: Mapping[int, Node]
 ) -> Iterable[Diagnostic]:
     rooms = {number for number, node in nodes.items() if node.category == ROOM_CATEGORY}
-    had = {(edge.source, edge.target) for edge in now.edges if edge.relation in HELD}
-    above: dict[int, set[int]] = {}
+    had = {(edge.source, edge.relation, edge.target) for edge in now.edges}
+    above: dict[int, set[tuple[str, int]]] = {}
     housed: set[int] = set()
     for edge in wanted.edges:
         for end in (edge.source, edge.target):
             if end not in nodes:
-                yield _fault(f"{edge.source} {edge.relation} {edge.target}: there is no node {end}", "remove the edge")
+                yield _fault(f"{_edge(edge)}: there is no node {end}", "remove the edge")
+        if edge.relation not in RELATION_ID:
+            yield _fault(f"{_edge(edge)}: no relation has that name", f"relations: {', '.join(RELATIONS)}")
+        if edge.relation in IN_HAND and (edge.source, edge.relation, edge.target) not in had:
+            yield _fault(f"{_edge(edge)}: a graph puts nothing into hands", "a script does, with [grab]")
         if edge.relation in HELD and edge.source in nodes and edge.target in nodes:
             housed.add(edge.source)
             if edge.target not in rooms:
-                above.setdefault(edge.source, set()).add(edge.target)
-    _, circles = _in_order(above)
-    for number, holders in above.items():
-        new = sorted(holder for holder in holders if (number, holder) not in had)
-        if len(holders) > 1 and new:
-            names = " and ".join(_label(nodes[holder]) for holder in sorted(holders)[:3])
-            yield _fault(f"{_label(nodes[number])} is on or in {names} at once", "remove the edge to the old place")
+                above.setdefault(edge.source, set()).add((edge.relation, edge.target))
+    _, circles = _in_order({number: {holder for _, holder in places} for number, places in above.items()})
+    for number, places in above.items():
+        new = any((number, *place) not in had for place in places)
+        if len(places) > 1 and new:
+            there = sorted(places, key=lambda place: (place[1], place[0]))[:3]
+            names = " and ".join(f"{relation} {_label(nodes[holder])}" for relation, holder in there)
+            yield _fault(f"{_label(nodes[number])} is {names} at once", "remove the edge to the old place")
         if new and number in circles:
             yield _fault(f"{_label(nodes[number])} is on or in itself, by others between", "break the circle")
     known = {node.id for node in now.nodes}
     for number in nodes.keys() - known - housed - rooms:
         yield _fault(f"{_label(nodes[number])} is nowhere", "add an edge ON or INSIDE to a thing or a room")
+
+
+def _edge(edge: Edge) -> str:
+    return f"{edge.source} {edge.relation[:40]} {edge.target}"
 
 
 def _label(node: Node) -> str:

@@ -11,10 +11,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hearth.rendering.cameras.camera import Camera, follow, top_view
-from hearth.rendering.cameras.viewpoints import bulky, freed, home_box, kept_inside, room_views
+from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.viewpoints import behind, bulky, freed, home_box, kept_inside, room_views
 from hearth.rendering.film.video import first_person
 from hearth.rendering.people.action_poses import Actor
+from hearth.rendering.scene.scene import Scene
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, EnvironmentGraph, Point
@@ -54,7 +55,8 @@ class Surroundings(NamedTuple):
 
 OWN_MOUNTS: Mapping[str, Mount] = MappingProxyType(
     {
-        "PERSON_TOP": Mount((0.0, 2.3, -0.3), (70.0, 0.0, 0.0), 80.0),
+        # In front of the head, which would else hide the hands.
+        "PERSON_TOP": Mount((0.0, 2.35, 0.3), (84.0, 0.0, 0.0), 80.0),
         "PERSON_FRONT": Mount((0.0, 1.55, 0.15), (15.0, 0.0, 0.0), 82.0),
         "PERSON_LEFT": Mount((-0.1, 1.55, 0.0), (15.0, -90.0, 0.0), 82.0),
         "PERSON_RIGHT": Mount((0.1, 1.55, 0.0), (15.0, 90.0, 0.0), 82.0),
@@ -90,17 +92,19 @@ def of_size(camera: Camera, size: tuple[int, int], graph: EnvironmentGraph) -> C
 
 
 def on_person(
-    name: str, mounts: Mapping[str, Mount], actor: Actor, around: Surroundings, size: tuple[int, int]
+    name: str, mounts: Mapping[str, Mount], actor: Actor, scene: Scene, around: Surroundings, size: tuple[int, int]
 ) -> Camera:
     """Return a camera of a character, as the character stands, sits or lies now."""
     mount = mounts[name]
     if mount is OWN_MOUNTS.get("PERSON_FRONT"):
         return replace(first_person(actor, size), name=name)
     if mount is OWN_MOUNTS.get("PERSON_FROM_BACK"):
-        return around.freed(follow(name, actor.position, actor.yaw, *size), actor.room)
+        return behind(name, actor, scene, size, around.rooms.get(actor.room), around.things)
     pitch, yaw, roll = mount.rotation
     turned = Mount(actor.world(mount.position), (pitch, yaw + actor.yaw, roll), mount.field)
     camera = mounted(name, turned, size)
+    if mount is OWN_MOUNTS.get("PERSON_TOP"):
+        return kept_inside(camera, around.rooms.get(actor.room))
     return around.freed(camera, actor.room) if "_FROM_" in name else camera
 
 

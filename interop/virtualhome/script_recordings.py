@@ -220,7 +220,7 @@ class _Cameras:
         if name == "FIRST_PERSON":
             return replace(first_person(actor, size), name=FIRST)
         if name in self.scene.mounts:
-            return on_person(name, self.scene.mounts, actor, self.scene.around, size)
+            return on_person(name, self.scene.mounts, actor, frame.scene, self.scene.around, size)
         return self.scene.cameras([int(name)], size)[0]
 
     def pictures(self, frame: Frame, later: Frame) -> Iterator[tuple[int, int, dict[str, Any]]]:

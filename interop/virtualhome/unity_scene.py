@@ -186,7 +186,9 @@ class UnityScene:
                 continue
             agent, number = divmod(index - len(standing), len(self.mounts))
             actor = self.followed.actors[agent]
-            found.append(on_person(tuple(self.mounts)[number], self.mounts, actor, self.around, size))
+            found.append(
+                on_person(tuple(self.mounts)[number], self.mounts, actor, self.followed.scene, self.around, size)
+            )
         return found
 
     def graph(self) -> dict[str, Any]:

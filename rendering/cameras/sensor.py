@@ -5,14 +5,15 @@ from typing import Any
 from numpy.typing import NDArray
 
 from hearth.kb.knowledge import Knowledge
-from hearth.rendering.cameras.camera import Camera, follow, top_view
-from hearth.rendering.cameras.viewpoints import home_box
+from hearth.rendering.cameras.camera import Camera, top_view
+from hearth.rendering.cameras.viewpoints import behind, bulky, home_box
 from hearth.rendering.film.followed_scene import FollowedScene
 from hearth.rendering.film.video import FIRST, THIRD, first_person
 from hearth.rendering.modalities import render
 from hearth.rendering.people.action_poses import Actor
 from hearth.rendering.scene.scene import Scene
 from hearth.schemas.graph import EnvironmentGraph
+from hearth.schemas.vocabulary import ROOM_CATEGORY
 from hearth.simulation.env import Env
 from hearth.simulation.world.world import World
 
@@ -49,6 +50,8 @@ class CameraSensor:
     ) -> None:
         self.followed = FollowedScene(home, knowledge, seed=seed, hour=hour)
         self.home, self.seed, self.size, self.view, self.quality = home, seed, size, view, quality
+        self._rooms = {node.id: node.box for node in home.nodes if node.category == ROOM_CATEGORY}
+        self._furniture = bulky(home)
         self._ticks = 0
         self._world: World | None = None
 
@@ -74,7 +77,7 @@ class CameraSensor:
         if self.view == FIRST:
             return first_person(actor, self.size)
         if self.view == THIRD:
-            return follow(THIRD, actor.position, actor.yaw, *self.size)
+            return behind(THIRD, actor, self.followed.scene, self.size, self._rooms.get(actor.room), self._furniture)
         return top_view(home_box(self.home), self.view, *self.size)
 
     def _follow(self, env: Env) -> None:

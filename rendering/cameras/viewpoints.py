@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from hearth.rendering.cameras.camera import Camera, follow, room_cameras
+from hearth.rendering.cameras.camera import Camera, follow, point_of, room_cameras
 from hearth.rendering.cameras.camera_candidates import around, free, preference
 from hearth.rendering.cameras.recognition import in_the_way, shows
 from hearth.rendering.cameras.visibility_estimates import Obstacles, Target, person, thing, values
@@ -17,6 +17,12 @@ from hearth.schemas.vocabulary import ROOM_CATEGORY
 
 JUDGED = (160, 120)
 """Size of the pictures by which cameras are judged, pixels."""
+
+NEARER = np.arange(0.0, 0.8, 0.05)
+"""Shares of the way to the person by which the third-person camera may be nearer."""
+
+CLEAR = 0.22
+"""Least distance between a camera and furniture, metres."""
 
 LOOKED_AT = 16
 """Number of the best cameras whose pictures are looked at."""
@@ -51,7 +57,7 @@ def bulky(graph: EnvironmentGraph) -> list[Box]:
     return [n.box for n in graph.nodes if n.box and n.category not in bodies and min(n.box.size) > 0.1]
 
 
-def freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
+def freed(camera: Camera, boxes: Sequence[Box], clear: float = CLEAR) -> Camera:
     """Return the camera, moved towards its target until no box contains it."""
     eye, target = np.array(camera.eye), np.array(camera.target)
     way = (target - eye) * (1.0, 0.0, 1.0)
@@ -60,6 +66,34 @@ def freed(camera: Camera, boxes: Sequence[Box], clear: float = 0.22) -> Camera:
         if not any(all(abs(at[k] - box.center[k]) < box.size[k] / 2 + clear for k in range(3)) for box in boxes):
             return replace(camera, eye=(float(at[0]), float(at[1]), float(at[2])))
     return camera
+
+
+def behind(
+    name: str, actor: Actor, scene: Scene, size: tuple[int, int], room: Box | None, boxes: Sequence[Box]
+) -> Camera:
+    """Return the third-person camera of a character, nearer where furniture has its place or hides the head.
+
+    Args:
+        name: of the camera.
+        actor: as the character stands now.
+        scene: as it is now; an open door hides, too.
+        size: width and height of the pictures.
+        room: the box that the camera must not leave; None for any place.
+        boxes: in which no camera can stand.
+    """
+    camera = kept_inside(follow(name, actor.position, actor.yaw, *size), room)
+    head = np.array(actor.figure().joints()["head"])
+    head = np.array(actor.world((float(head[0]), float(head[1]), float(head[2]))))
+    ways = (head - camera.eye) * (1.0, 0.0, 1.0)
+    eyes = np.array(camera.eye) + ways * NEARER[:, None]
+    rays = np.concatenate((eyes, head - eyes), axis=1).astype(np.float32)
+    distances, ids = Obstacles.exact(scene).cast(rays)
+    seen = (ids == actor.node.id) | (distances >= 1)
+    middles, halves = (np.array([getattr(box, key) for box in boxes]).reshape(-1, 3) for key in ("center", "size"))
+    inside = (abs(eyes[:, None] - middles) < halves / 2 + CLEAR).all(axis=2).any(axis=1)
+    fit = np.flatnonzero(seen & ~inside)
+    chosen = eyes[fit[0]] if len(fit) else eyes[0]
+    return replace(camera, eye=point_of(chosen))
 
 
 def best_view(

@@ -11,8 +11,8 @@ import numpy as np
 
 from hearth.rendering.annotations import camera_of
 from hearth.rendering.arrays import Image
-from hearth.rendering.cameras.camera import Camera, follow, look_at, top_view
-from hearth.rendering.cameras.viewpoints import home_box, kept_inside, room_views
+from hearth.rendering.cameras.camera import Camera, look_at, top_view
+from hearth.rendering.cameras.viewpoints import behind, bulky, home_box, room_views
 from hearth.rendering.film.execution_keyframes import Trajectory
 from hearth.rendering.film.execution_pictures import AUTO, TOP
 from hearth.rendering.film.film_moments import room_at
@@ -118,6 +118,9 @@ class CameraSelector:
 
     `auto` shows each act so that the person and its objects can be recognised, in shots of at least three seconds; see
     `shots`.
+
+    Raises:
+        HearthError: NOT_RENDERED: no such camera; UNKNOWN_AGENT: no such agent.
     """
 
     def __init__(self, trajectory: Trajectory, home: EnvironmentGraph, view: str, size: tuple[int, int]) -> None:
@@ -133,7 +136,12 @@ class CameraSelector:
         if self.view not in VIEWS and view not in fixed:
             known_names = ", ".join((*VIEWS, *sorted(fixed)[:3], "..."))
             raise HearthError.of(Code.NOT_RENDERED, f"no camera `{view}`", suggestion=known_names)
+        people = len(trajectory.keyframes[0].actors)
+        if self.agent is not None and self.agent >= people:
+            message = f"no agent {self.agent} to go with; there are {people}, from 0"
+            raise HearthError.of(Code.UNKNOWN_AGENT, message)
         self.fixed = fixed.get(view)
+        self.furniture = bulky(home)
         self.room = 0
 
     @cached_property
@@ -142,16 +150,9 @@ class CameraSelector:
         return Planner(self.trajectory, self.home, self.views, self.size, self.agent).shots()
 
     def camera(self, frame: Frame) -> Camera:
-        """Return the camera of a frame.
-
-        Raises:
-            HearthError: the agent does not exist.
-        """
+        """Return the camera of a frame."""
         if self.fixed is not None:
             return self.fixed
-        if self.agent is not None and self.agent >= len(frame.actors):
-            message = f"no agent {self.agent} to go with; there are {len(frame.actors)}, from 0"
-            raise HearthError.of(Code.UNKNOWN_AGENT, message)
         if self.view == AUTO:
             return self.shots.at(frame.time)
         actor = frame.actors[self.agent or 0]
@@ -159,7 +160,7 @@ class CameraSelector:
             return first_person(actor, self.size)
         # In a doorway no room contains the position: the camera stays.
         self.room = room_at(self.rooms, actor.spot) or self.room or actor.room
-        return kept_inside(follow(THIRD, actor.position, actor.yaw, *self.size), self.rooms.get(self.room))
+        return behind(THIRD, actor, frame.scene, self.size, self.rooms.get(self.room), self.furniture)
 
 
 def first_person(actor: Actor, size: tuple[int, int], pitch: float = 22.0) -> Camera:
@@ -251,6 +252,7 @@ def record(
         (15, 4, ['auto.mp4'])
     """
     drawn = check_modalities([name for name in modalities if name not in ("graph", "rgb")], quality)
+    CameraSelector(trajectory, home, view, size)  # refuses an unknown camera before a file begins
     known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}
     steps = times(list(known.values()))
     wanted = {tick: named_in(trajectory, span.steps) for tick, span in known.items()}

@@ -28,6 +28,15 @@ def test_a_program_becomes_pictures_and_a_contact_sheet(tmp_path):
     assert re.search(r"shows the person in [0-3] of 3 pictures, and all objects of [0-2] of the 2 steps", result.output)
 
 
+@pytest.mark.parametrize("wrong", [["--modalities", "smell"], ["--mode", "video", "--cameras", "nowhere"],
+                                   ["--mode", "video", "--cameras", "third.3"]])  # fmt: skip
+def test_a_refused_film_leaves_no_folder(tmp_path, wrong):
+    (tmp_path / "sit.txt").write_text("Sit\nRest\n\n\n[Walk] <couch> (1)\n")
+    words = ["render-program", str(tmp_path / "sit.txt"), "--out", str(tmp_path / "out"), "--width", "64", *wrong]
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 1 and not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("shows", "line"),
     [

@@ -6,7 +6,9 @@ import json
 
 import pytest
 
+from hearth.commands.challenge_eai import _difference
 from hearth.interop.eai import subgoal_decomposition
+from hearth.interop.eai.model_table import _add_chances
 from hearth.interop.eai.operator_repair import names_in, read, repaired, with_constants
 from hearth.interop.eai.subgoal_acts import ways
 from hearth.interop.eai.task_worlds import task_world
@@ -116,9 +118,26 @@ def test_operators_are_read_as_earlier_planners_read_them():
     )  # fmt: skip
     bound = "(exists (?r - object) (inside ?o ?r))"
     assert repaired("(?o)", bound, "(held ?o)") == ("(?o)", bound, "(held ?o)")
+    for condition in ("(inside ?o ?room - object)", "((near ?o) (near ?any))", "(and ((near ?any)))"):
+        assert repaired("(?o)", condition, condition)[1:] == (condition, condition)
     assert repaired("(?o", "(a)", "(b)") == ("(?o", "(a)", "(b)")
     assert list(names_in(read("(and (inside ?c bathroom) (forall (?x - object) (near ?x sink)))"))) == [
         "bathroom", "sink",
     ]  # fmt: skip
     domain, problem = with_constants("(define (:predicates (a)))", "(:objects cup - object)", ["cup", "moon"])
     assert "(:constants cup - object moon - object)" in domain and problem == "(:objects)"
+
+
+def test_what_the_interface_leaves_to_chance(wheel, knowledge):
+    text = json.dumps({"output": ["ON(moon.1) or PLUGGED_IN(television.10)", "ON(television.10)"]})
+    answer = Answer("1_1", text)
+    assert subgoal_decomposition.judged(wheel, answer, knowledge)[1:3] == (False, False)
+    assert subgoal_decomposition.outcomes(wheel, answer, knowledge) == {(False, False), (True, True)}
+    rows = [{"measure": "success"}, {"measure": "execution"}]
+    sure = Answer("1_1", json.dumps({"output": ["PLUGGED_IN(television.10)", "ON(television.10)"]}))
+    verdicts = {name: subgoal_decomposition.outcomes(wheel, each, knowledge)
+                for name, each in (("a", answer), ("b", sure))}  # fmt: skip
+    _add_chances(rows, verdicts)
+    assert all((row["low"], row["high"], row["by_chance"]) == (50.0, 100.0, ["a"]) for row in rows)
+    row = {**rows[0], "model": "M", "published": 80.0, "theirs": 50.0}
+    assert _difference(row).endswith("which gives 50.0 to 100.0; it decides the tasks a")

@@ -73,6 +73,20 @@ def two_places(graph, ids):
     graph["edges"].append({"from_id": ids["mug"], "relation_type": "ON", "to_id": ids["sofa"]})
 
 
+def on_and_in(graph, ids):
+    graph["edges"] = [edge for edge in graph["edges"] if edge["from_id"] != ids["mug"]]
+    graph["edges"] += [{"from_id": ids["mug"], "relation_type": name, "to_id": ids["bed"]} for name in ("ON", "INSIDE")]
+
+
+def beneath(graph, ids):
+    graph["nodes"].append({"class_name": "box", "id": 2000})
+    graph["edges"].append({"from_id": 2000, "relation_type": "BENEATH", "to_id": ids["bed"]})
+
+
+def in_hand(graph, ids):
+    graph["edges"].append({"from_id": ids["character"], "relation_type": "HOLDS_RH", "to_id": ids["mug"]})
+
+
 def circle(graph, ids):
     graph["nodes"] += [{"class_name": "box", "id": 2000}, {"class_name": "box", "id": 2001}]
     graph["edges"] += [{"from_id": 2000, "relation_type": "INSIDE", "to_id": 2001},
@@ -112,9 +126,12 @@ def roomless(graph, ids):
     [(both_states, "fridge (137) is both CLOSED and OPEN"), (two_places, "at once"), (circle, "on or in itself"),
      (nowhere, "box (2000) is nowhere"), (dangling, "there is no node 99999"), (twice, "two nodes have the id"),
      (unknown, "no class is called `flux capacitor`"), (renamed, "is a `fridge`, and the graph calls it `sofa`"),
+     (on_and_in, "INSIDE bed"), (beneath, "no relation has that name"),
+     (in_hand, "a graph puts nothing into hands"),
      (roomless, "lacks the room kitchen"), (flying, "fridge (137) has the unknown state FLYING")],
 )  # fmt: skip
 def test_graphs_that_contradict_themselves_change_nothing(client, edit, words):
+    client.add_character(room="kitchen")
     before = client.graph()
     wanted = copy.deepcopy(before)
     edit(wanted, ids_of(before))

@@ -271,6 +271,16 @@ def test_what_is_no_request_is_refused_in_the_protocol_s_own_words(server, body)
     assert reply["success"] is False and reply["message"] and "INTERNAL_ERROR" not in reply["message"]
 
 
+def test_a_refusal_is_a_line_of_the_log(server, caplog):
+    server.answer(b'{"action": "camera_image", "intParams": [0], "stringParams": ["{\\"mode\\": \\"albedo\\"}"]}')
+    server.answer(b'{"action": "fly\\u001b[2J\\nme"}')
+    first, second = (record.getMessage() for record in caplog.records)
+    assert first.startswith("refused camera_image: Hearth does not draw the mode `albedo`")
+    assert second.startswith("refused fly\\x1b[2J me: there is no action")
+    server.answer(b'{"action": "idle"}')
+    assert len(caplog.records) == 2
+
+
 def test_ids_are_repeated_and_settings_of_other_kinds_refused():
     assert read_request(b'{"id": 1.5, "action": "idle"}').id == "1.5"
 
