@@ -138,7 +138,7 @@ def test_of_two_people_the_one_who_is_late_sees_the_clock_and_is_told(served, br
     assert in_window(page, "#time") and other.locator("#time").is_hidden()
     page.wait_for_selector('#game[data-tick="1"]')
     assert "You did not decide within 15 seconds, so you waited" in page.inner_text("#said")
-    other.locator("#said", has_text="You turned left. The other waited.").wait_for()
+    other.locator("#said", has_text="You turned left.").wait_for()
     assert page.locator("#time").is_hidden()
     other.context.close()
 
