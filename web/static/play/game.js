@@ -287,7 +287,7 @@ function showInvitation() {
 // A button that copies the invitation; where a browser does not allow that, it marks the link to copy by hand.
 function copying(address) {
   const button = document.createElement("button");
-  Object.assign(button, { type: "button", className: "plain", textContent: say("copy") });
+  Object.assign(button, { type: "button", id: "copy", className: "plain", textContent: say("copy") });
   button.addEventListener("click", () => {
     const marked = () => getSelection().selectAllChildren(banner.querySelector("a"));
     const copied = navigator.clipboard?.writeText(address) ?? Promise.reject(new Error("no clipboard"));
