@@ -120,9 +120,10 @@ def test_every_button_of_the_page_does_something(serving, page):
     for name in ("fridge", "mug", "coffee table", "couch"):
         button = page.locator("#game .lists button.thing:not([disabled])").filter(has_text=re.compile(f"^{name}"))
         thing = button.first.get_attribute("data-id")
-        press(page, thing, "Go all the way")
-        pressed.add("Go all the way")
-        settled(page)
+        if "close" not in button.first.get_attribute("class").split():  # what is reached is not walked to
+            press(page, thing, "Go all the way")
+            pressed.add("Go all the way")
+            settled(page)
         assert page.locator(f'#game .lists button.thing.close[data-id="{thing}"]').count() == 1, f"not at the {name}"
         for _ in range(12):
             left = [words for words in offered(page, thing) if kind_of(words) not in pressed]
