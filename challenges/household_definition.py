@@ -105,12 +105,6 @@ def home_named(name: str, knowledge: Knowledge) -> Home:
     return Home.from_graph(load_graph(name, knowledge), name, knowledge)
 
 
-def home_words(name: str) -> str:
-    """Return the words for a home: its name, or for `home_4_17` that it is a generated home of four rooms."""
-    rooms = numbers_of(name)
-    return f"a generated home of {rooms[0]} rooms" if rooms else name
-
-
 def numbers_of(name: str) -> tuple[int, int] | None:
     """Return the rooms and the seed of a generated home; None for other homes."""
     head, *numbers = name.split("_")

@@ -5,4 +5,4 @@ from hearth.schemas.optional_libraries import lacking
 if lacking("web"):
     collect_ignore_glob = ["test_*.py"]
 else:
-    from web.people import browser, person, served, server, serving  # noqa: F401
+    from web.people import browser, drawing, person, served, server, serving  # noqa: F401

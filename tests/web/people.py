@@ -16,6 +16,7 @@ from starlette.testclient import TestClient
 from hearth.web.application import application
 from hearth.web.limits import RATES, Rate
 from hearth.web.store import Store, default_url
+from hearth.web.third_party_scripts import missing
 
 ROOT = Path(__file__).resolve().parents[2]
 DESK = "the-desk-token-of-these-tests"
@@ -119,6 +120,21 @@ def browser():
         yield strict(started, uncaught)
         started.close()
     assert uncaught == [], "a page's script failed"
+
+
+WEBGL = ("--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader")
+
+
+@pytest.fixture
+def drawing(browser):
+    """A page of a browser that draws in 3D, in software."""
+    if "three" in missing():
+        pytest.skip("no three.js: make web")
+    faults = []
+    started = strict(browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL)), faults)
+    yield started.new_context(viewport={"width": 1400, "height": 1000}).new_page()
+    started.close()
+    assert faults == []
 
 
 def strict(started, uncaught: list[str]):

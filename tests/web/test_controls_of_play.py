@@ -32,7 +32,10 @@ def page(browser, served, records, width, request):
         records[width].ran.add(request.function.__name__)
 
 
-REFUSED = {"test_an_unknown_task_leads_back_to_the_form": ("/play/new",)}
+REFUSED = {
+    "test_a_third_person_is_told_that_the_game_is_full": ("",),
+    "test_an_unknown_task_leads_back_to_the_form": ("/play/new",),
+}
 
 
 def begin(page, name="wah", **choices):
@@ -188,22 +191,23 @@ def test_a_game_is_kept_and_finished(page):
     move(page, "Turnleft")
     press(page, "#finish")
     press(page, page.locator("#sure").get_by_role("button", name="Finish"))
-    page.locator("#banner", has_text="You finished this task after 1 tick").wait_for()
+    page.locator("#banner", has_text="You finished this task after 1 step").wait_for()
     assert page.locator("#save").is_disabled() and page.locator("#finish").is_disabled()
     with page.expect_download() as kept:
-        press(page, page.locator("#banner").get_by_text("episode"))
+        press(page, page.locator("#banner").get_by_text("record"))
     assert kept.value.suggested_filename.endswith(".jsonl")
-    assert go(page, page.locator("#banner").get_by_text("Go on")) == "Play"
+    assert go(page, page.locator("#banner").get_by_text("Choose another task")) == "Play"
     with page.expect_download():
         press(page, page.locator("table tbody td:last-child a"))
 
 
 def test_two_people_meet_by_the_link(page):
     begin(page, helper="person")
-    link = page.locator("#banner a")
+    link, title = page.locator("#banner a"), page.inner_text("h1")
     address = link.get_attribute("href")
-    assert go(page, link) == "Join a game"
-    page.go_back()
+    press(page, "#banner button")
+    page.locator("#banner button", has_text=re.compile("Copied|Marked")).wait_for()
+    assert go(page, link) == title, "the person's own link leads back to the game"
     other = page.context.browser.new_context().new_page()
     other.goto(address)
     other.get_by_role("button", name="Begin").click()
@@ -221,6 +225,28 @@ def test_one_who_was_invited_joins(page, served):
     press(page, page.get_by_role("button", name="Join"))
     page.wait_for_selector("#game[data-tick]")
     inviting.context.close()
+
+
+def test_a_third_person_is_told_that_the_game_is_full(page, served):
+    people = [page.context.browser.new_context().new_page() for _ in range(2)]
+    for each in people:
+        each.goto(f"{served.address}/play/")
+        each.get_by_role("button", name="Begin").click()
+    begin(people[0], helper="person")
+    link = people[0].locator("#banner a").get_attribute("href")
+    page.goto(link)  # while there is a place
+    people[1].goto(link)
+    people[1].get_by_role("button", name="Join").click()
+    press(page, page.get_by_role("button", name="Join"))
+    page.get_by_role("alert").filter(has_text="Two people are in this game already").wait_for()
+    page.goto(link)
+    assert page.get_by_role("button", name="Join").count() == 0 and accessibility(page) == []
+    assert go(page, page.get_by_role("link", name="Play alone")) == "Play"
+    page.goto(link)
+    assert go(page, page.get_by_role("link", name="Wait for somebody")) == "Play with somebody"
+    press(page, page.get_by_role("button", name="Stop waiting"))
+    for each in people:
+        each.context.close()
 
 
 def wait_for_somebody(page):
@@ -274,7 +300,7 @@ def test_a_helper_stands_in_when_nobody_comes(page):
     wait_for_somebody(page)
     go(page, page.get_by_role("button", name="Begin with a helper"))
     page.wait_for_selector("#game[data-tick]")
-    assert "Somebody helps" in page.inner_text("#clock")
+    assert "A helper is in the home" in page.inner_text("#clock")
     move(page, "Turnleft")
 
 

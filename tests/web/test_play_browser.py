@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from web.people import accessibility, strict, watched
+from web.people import accessibility, watched
 from web.playing import alone
 
 from hearth.kb.loading.load import default
@@ -20,11 +20,9 @@ from hearth.web.play import game_store
 from hearth.web.play.live_games import LiveGame
 from hearth.web.play.play_trials import published
 from hearth.web.store import Store, default_url
-from hearth.web.third_party_scripts import missing
 
 pytestmark = pytest.mark.tools
 SPLIT = {"wah": "test-1", "owah": "test"}
-WEBGL = ("--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader")
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -122,9 +120,10 @@ def test_every_button_of_the_page_does_something(serving, page):
     for name in ("fridge", "mug", "coffee table", "couch"):
         button = page.locator("#game .lists button.thing:not([disabled])").filter(has_text=re.compile(f"^{name}"))
         thing = button.first.get_attribute("data-id")
-        press(page, thing, "Go all the way")
-        pressed.add("Go all the way")
-        settled(page)
+        if "close" not in button.first.get_attribute("class").split():  # what is reached is not walked to
+            press(page, thing, "Go all the way")
+            pressed.add("Go all the way")
+            settled(page)
         assert page.locator(f'#game .lists button.thing.close[data-id="{thing}"]').count() == 1, f"not at the {name}"
         for _ in range(12):
             left = [words for words in offered(page, thing) if kind_of(words) not in pressed]
@@ -245,18 +244,6 @@ def test_a_program_in_another_language_helps(serving, page):
     answer = page.request.get(f"{page.url}/episode.jsonl").text()
     acts = json.loads(answer.splitlines()[1])["actions"]
     assert game and any(helper is not None for _, helper in acts)
-
-
-@pytest.fixture
-def drawing(browser):
-    """A page of a browser that draws in 3D, in software."""
-    if "three" in missing():
-        pytest.skip("no three.js: make web")
-    faults = []
-    started = strict(browser.browser_type.launch(executable_path=shutil.which("chromium"), args=list(WEBGL)), faults)
-    yield started.new_context(viewport={"width": 1400, "height": 1000}).new_page()
-    started.close()
-    assert faults == []
 
 
 def test_what_is_under_the_cursor_is_what_our_renderer_shows(serving, drawing):
@@ -382,7 +369,7 @@ def test_a_task_is_finished_once_that_is_confirmed(serving, drawing, way):
     drawing.wait_for_selector('#game[data-tick="1"]')
     ask()
     drawing.locator("#sure").get_by_role("button", name="Finish").click()
-    drawing.locator("#banner", has_text="You finished this task after 1 tick").wait_for()
+    drawing.locator("#banner", has_text="You finished this task after 1 step").wait_for()
 
 
 def test_pictures_of_our_renderer_need_no_webgl(serving, page):

@@ -173,5 +173,5 @@ def test_the_time_that_is_left_is_shown_and_kept(serving, page, tmp_path):
     page.locator('[data-move="Turnleft"]').click()
     page.wait_for_selector('#game[data-tick="1"]')
     assert seen(page) == []
-    page.locator("#banner", has_text="The time is over, after 1 tick").wait_for()
+    page.locator("#banner", has_text="The time is over, after 1 step").wait_for()
     assert page.inner_text("#time") < first and page.locator('[data-move="Turnleft"]').is_disabled()

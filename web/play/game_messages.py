@@ -23,6 +23,7 @@ from hearth.simulation.motion.ground import UNTOUCHED
 from hearth.simulation.observation import reach
 from hearth.simulation.observation.masked_world import as_seen
 from hearth.simulation.observation.views import LastAction, View
+from hearth.simulation.observation.views import Pose as AgentPose
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, lowest
 from hearth.simulation.world.home import Home
@@ -101,7 +102,7 @@ class Telling:
             "changed": changed,
             "gone": gone,
             "legal": legal_json(legal, view.me.node),
-            "agents": [_character(pose, view) for pose in (view.me, *view.others)],
+            "agents": [{**_character(pose, view), "waited": self._waited(pose)} for pose in (view.me, *view.others)],
             "over": game.over,
             "success": game.playing.progress[-1].satisfied,
             "end": None if game.end is None else game.end["code"],
@@ -118,6 +119,10 @@ class Telling:
             for each, number in zip(counts, done, strict=True)
         ]
         return [*rows, *joined_rows(progress)] if self.number == 0 else rows
+
+    def _waited(self, pose: AgentPose) -> bool:
+        """Return whether a character did nothing in the tick before; its last act is of an earlier one then."""
+        return bool(self.game.texts) and self.game.texts[-1][pose.agent] is None
 
     def tick(self) -> dict[str, Any]:
         """Return the tick as a message of its own."""
@@ -206,7 +211,8 @@ def floor_plan(home: Home) -> list[list[Any]]:
     order = sorted((node for node in nodes if node.category in kinds and node.box), key=lambda n: n.category in PLAN)
     frames = {node.id for node in order if node.category == "Doors" and "CAN_OPEN" not in node.properties}
     rows = [(node, "frame" if node.id in frames else kinds[node.category]) for node in order]
-    return [[kind, node.class_name, _rect(node), node.id, thing_name(label(node.class_name))] for node, kind in rows]
+    names = called(home)  # as the lists have them: of two bedrooms, one is `bedroom 1`
+    return [[kind, node.class_name, _rect(node), node.id, names[home.index[node.id]]] for node, kind in rows]
 
 
 PLACES = {"ON": ("SURFACES",), "INSIDE": ("CONTAINERS", "CAN_OPEN")}

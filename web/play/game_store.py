@@ -83,16 +83,25 @@ def join(connection: sql.Connection, session: str, code: str) -> str:
     Raises:
         WebError: UNKNOWN_ID: there is no such game for two; LOCKED: another person has the seat.
     """
+    game, people = invited(connection, code)
+    if session not in people:
+        if len(people) > 1:
+            raise WebError(Code.LOCKED, "code", "a free seat", "somebody else has it")
+        take_second_seat(connection, game, session)
+    return game
+
+
+def invited(connection: sql.Connection, code: str) -> tuple[str, frozenset[str]]:
+    """Return the id of the game with a code, and the sessions that have a seat in it.
+
+    Raises:
+        WebError: UNKNOWN_ID: there is no such game for two.
+    """
     found = connection.execute(sql.select(GAMES.c.id, GAMES.c.trial).where(GAMES.c.code == code)).first()
     if found is None or read_trial(orjson.loads(found.trial)).helper != PERSON:
         raise WebError(Code.UNKNOWN_ID, "code", "the code of a game for two", "another")
-    rows = connection.execute(sql.select(SEATS.c.agent, SEATS.c.session).where(SEATS.c.game == found.id))
-    seats = {row.session: row.agent for row in rows}
-    if session not in seats:
-        if len(seats) > 1:
-            raise WebError(Code.LOCKED, "code", "a free seat", "somebody else has it")
-        take_second_seat(connection, str(found.id), session)
-    return str(found.id)
+    seats = connection.execute(sql.select(SEATS.c.session).where(SEATS.c.game == found.id))
+    return str(found.id), frozenset(str(row.session) for row in seats)
 
 
 def take_second_seat(connection: sql.Connection, game: str, session: str) -> None:

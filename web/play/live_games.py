@@ -112,6 +112,12 @@ class LiveGame:
         left = self.stored.deadline - time.time()
         return None if left == math.inf else max(0.0, left)
 
+    def seconds_to_decide(self, number: int) -> float | None:
+        """Return the seconds after which a person waits in this tick; None if the other of two has not decided."""
+        if self.game.over or len(self.game.trial.people) < 2 or not self.decided or number in self.decided:
+            return None
+        return max(0.0, self.waiting_since + PATIENCE - time.time())
+
     def _now(self, rows: list[Decided]) -> None:
         """Record the characters that have decided in the present tick, and the time of the first decision."""
         self.decided = tuple(each.agent for each in rows)

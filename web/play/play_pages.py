@@ -11,7 +11,7 @@ from hearth.challenges.challenge_definition import NAMES, challenge
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
-from hearth.challenges.household_definition import home_words, settings
+from hearth.challenges.household_definition import settings
 from hearth.challenges.result_files import MOST_SEEDS
 from hearth.challenges.tasks import Task
 from hearth.schemas.diagnostics import HearthError
@@ -24,17 +24,26 @@ from hearth.web.play.game_messages import goal_words, part_words
 from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
-from hearth.web.play.live_games import games
-from hearth.web.play.play_trials import INTERFACES, Trial, drawable, offered, published, trial
+from hearth.web.play.live_games import PATIENCE, games
+from hearth.web.play.play_trials import INTERFACES, NOBODY, PERSON, Trial, drawable, offered, published, trial
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.third_party_scripts import missing
 from hearth.web.web_errors import WebError
 
+KINDS = {
+    "wah": ("With a limited view", "You see only what is around you: things may be in another room, or in a cupboard."),
+    "owah": ("With the whole view", "You see everything in the home from the beginning."),
+}
+"""Headings and explanations of the challenges, for people."""
+
+FIRST_HELPERS = (NOBODY, PERSON, "hp_true", "expected_time", "random")
+"""Helpers that the page offers first: all others are for people who compare helpers."""
+
 SHOWN = {"symbolic": "Buttons and a floor plan", "visual": "First person, in 3D", "stream": "First person, pictures"}
 """The interfaces, for people."""
 
-KINDS_SHOWN = {True: "only what is around me", False: "everything"}
-"""A person's view of the home, for people."""
+KINDS_SHOWN = {True: "only what is around you", False: "everything"}
+"""The two views of a home, whole or not, for people."""
 
 FIRST_TASKS = 20
 """Tasks of each challenge that the page offers; studies choose others."""
@@ -57,11 +66,28 @@ def _start_page(visit: Visit, unknown: str = "") -> Response:
         400 if unknown else 200,
         unknown=unknown,
         household=[(number, f"{number + 1}. {people_say[family]}") for number, family in enumerate(_families())],
-        challenges=[(name, challenge(name).title, list(_tasks(name)), offered(challenge(name))) for name in NAMES],
+        challenges=[_offer(name) for name in NAMES],
         interfaces={name: SHOWN[name] for name in drawable()},
         lacking=missing(),
         games=[_line(each) for each in mine[:30] if not each.blind],
     )
+
+
+def _offer(name: str) -> dict[str, Any]:
+    """Return what the form of a challenge offers."""
+    can = offered(challenge(name))
+    title, about = KINDS[name]
+    first = [each for each in FIRST_HELPERS if each in can]
+    sees = sorted(KINDS_SHOWN, key=lambda partial: partial is not challenge(name).partial)
+    return {
+        "name": name,
+        "title": title,
+        "about": about,
+        "tasks": list(_tasks(name)),
+        "first": first,
+        "more": [each for each in can if each not in first],
+        "sees": [("partial" if partial else "full", KINDS_SHOWN[partial]) for partial in sees],
+    }
 
 
 def _families() -> Iterator[str]:
@@ -75,16 +101,18 @@ def _tasks(name: str) -> Iterator[tuple[int, str]]:
     split = "test-1" if "test-1" in which.splits else "test"
     for number in range(FIRST_TASKS):
         task = published(name, split, number)
-        titles = ", ".join(which.grammar.sets[each].asked for each in task.sets)
-        yield number, f"{number + 1}. {titles}, in {task.home}"
+        yield number, f"{number + 1}. {', '.join(which.grammar.sets[each].asked for each in task.sets)}"
 
 
 def _line(each: Stored) -> dict[str, Any]:
     over = each.result is not None
-    state = ("reached" if each.result and each.result["success"] else "ended") if over else "go on"
+    state = (
+        ("goal reached" if each.result and each.result["success"] else "goal not reached") if over else "not finished"
+    )
     return {
         "id": each.id,
-        "title": f"{each.trial.title}, in {home_words(each.trial.task.home)}",
+        "over": over,
+        "title": each.trial.title,
         "helper": say("helpers", each.trial.helper),
         "state": state,
     }
@@ -148,14 +176,24 @@ def game_page(visit: Visit) -> Response:
 
 
 def join_page(visit: Visit) -> Response:
-    """Ask whether one wants to join."""
-    return visit.page("play/join.html", code=visit.part("code"))
+    """Ask a person with an invitation whether to join; a person of the game goes on with it, and a third is refused."""
+    code = visit.part("code")
+    game, people = visit.web.store.read(lambda connection: game_store.invited(connection, code))
+    if visit.person in people:
+        return visit.go(f"/play/game/{game}")
+    full = len(people) > 1
+    return visit.page("play/join.html", code=code, full=full, patience=int(PATIENCE))
 
 
 def join(visit: Visit) -> Response:
     """Take the second seat of a game."""
     code = visit.part("code")
-    game = visit.web.store.write(lambda connection: game_store.join(connection, visit.person, code))
+    try:
+        game = visit.web.store.write(lambda connection: game_store.join(connection, visit.person, code))
+    except WebError as fault:
+        if fault.code is not Code.LOCKED or not by_browser(visit.request):
+            raise
+        return visit.page("play/join.html", 409, code=code, full=True, patience=int(PATIENCE))
     return visit.go(f"/play/game/{game}")
 
 

@@ -16,7 +16,7 @@ from hearth.web.messages import int_field, text_field
 from hearth.web.person_socket import Link
 from hearth.web.play.game_messages import Telling
 from hearth.web.play.game_store import is_full, keep_opening
-from hearth.web.play.live_games import LiveGame, games
+from hearth.web.play.live_games import PATIENCE, LiveGame, games
 from hearth.web.play.play_trials import PERSON, PROGRAM, SIZE
 from hearth.web.play.player_presence import SIGN_EVERY, give_sign
 from hearth.web.web_errors import WebError
@@ -153,7 +153,13 @@ class Page:
 
     def _waiting(self) -> dict[str, Any]:
         other = self.live.other(self.number)
-        return {"decided": list(self.live.decided), "go_on": self.live.stored.go_on, "other": other}
+        return {
+            "decided": list(self.live.decided),
+            "go_on": self.live.stored.go_on,
+            "other": other,
+            "patience": PATIENCE,
+            "decide_within": self.live.seconds_to_decide(self.number),
+        }
 
     def _signed(self) -> None:
         """Keep from time to time that this person is there, for the other of two."""

@@ -17,6 +17,7 @@ from hearth.challenges.suite_runs import INFERRED
 from hearth.challenges.task_files import Suite, read_suite, suite_data
 from hearth.challenges.tasks import Task
 from hearth.challenges.watch_stage import inferred
+from hearth.envs.compact_text import IN_SHORT
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.diagnostics import HearthError
 from hearth.schemas.failures import Code
@@ -75,8 +76,11 @@ class Trial:
 
     @property
     def instruction(self) -> str:
-        """Return what the person is asked to do in words; empty where the goal's title says it."""
-        return self.task.instruction if isinstance(self.task, OpenTask) else ""
+        """Return what the person is asked to do in words; empty where the goal's title says it.
+
+        Of an activity, the words of the person that wrote it down are left out: they tell of more than its goal has.
+        """
+        return self.task.instruction.rpartition(IN_SHORT)[2] if isinstance(self.task, OpenTask) else ""
 
     @property
     def helped(self) -> bool:

@@ -2,7 +2,7 @@
 import * as THREE from "/fetched/three/build/three.module.js";
 import { NUMBERED, SHOWN, around, hide, inPicture, load, merged, model, seenFrom } from "./home_meshes.js";
 import { viewKeys } from "./view_keys.js";
-import { name, say } from "./words.js";
+import { say, titled } from "./words.js";
 
 const [WIDTH, HEIGHT] = [640, 480];
 const GLIDE = 220; // milliseconds from one tick's eyes to the next
@@ -29,8 +29,11 @@ export class FirstPerson {
     this.look = { pitch: 0, yaw: 0 };
     this.turned = 0;
     this.frames = 0;
+    this.arrived = false; // the picture shows what one sees from where one stands now
+    this.seen = { width: WIDTH / 8, height: HEIGHT / 8 };
+    this.small = new THREE.WebGLRenderTarget(this.seen.width, this.seen.height);
     this.build();
-    viewKeys(this, element, { send, act, save, finish });
+    viewKeys(this, { act, save, finish });
     this.renderer.setAnimationLoop((time) => this.frame(time));
   }
 
@@ -45,7 +48,9 @@ export class FirstPerson {
     this.label.className = "label";
     this.label.textContent = say("loading");
     this.renderer.domElement.setAttribute("aria-hidden", "true");
-    this.element.replaceChildren(this.renderer.domElement, this.label);
+    this.frameOf = document.createElement("div");
+    Object.assign(this.frameOf, { className: "mark", hidden: true });
+    this.element.replaceChildren(this.renderer.domElement, this.frameOf, this.label);
     const at = (event) => {
       const box = this.renderer.domElement.getBoundingClientRect();
       return [Math.floor((event.clientX - box.left) / box.width * WIDTH), Math.floor((event.clientY - box.top) / box.height * HEIGHT)];
@@ -66,6 +71,12 @@ export class FirstPerson {
     const [x, y, yaw, pitch] = from;
     if (Math.hypot(event.clientX - x, event.clientY - y) > 4) from[4] = true;
     this.look = { yaw: yaw - (event.clientX - x) * 0.2, pitch: Math.max(-75, Math.min(75, pitch + (event.clientY - y) * 0.2)) };
+    this.lookAnew();
+  }
+
+  // One looks elsewhere: the picture is drawn anew, and what was marked in it is not any more.
+  lookAnew() {
+    this.frameOf.hidden = true;
     this.moved = true;
   }
 
@@ -84,7 +95,7 @@ export class FirstPerson {
 
   show(id) {
     this.label.hidden = !id;
-    if (id && this.state) this.label.textContent = this.state.things.has(id) ? name(this.state.things, id) : this.names.get(id) ?? "";
+    if (id && this.state) this.label.textContent = this.state.things.has(id) ? titled(this.state, id) : this.names.get(id) ?? "";
   }
 
   // Draws what is wanted last; what comes meanwhile waits, and only the last of it is drawn.
@@ -142,7 +153,10 @@ export class FirstPerson {
     }
     for (const [key, each] of now) {
       const [id, , , x, y, z, yaw] = each;
-      if (!this.placed.has(key)) this.placed.set(key, shape.get(each).map((part) => new THREE.Mesh(part, SHOWN)));
+      if (!this.placed.has(key)) {
+        this.placed.set(key, shape.get(each).map((part) => new THREE.Mesh(part, SHOWN)));
+        for (const mesh of this.placed.get(key)) mesh.userData.thing = id;
+      }
       for (const mesh of this.placed.get(key)) {
         mesh.position.set(x, y, z);
         mesh.rotation.y = THREE.MathUtils.degToRad(yaw + (this.state.mine?.holding.includes(id) ? this.turned : 0));
@@ -175,15 +189,21 @@ export class FirstPerson {
     this.to = to;
     this.since = performance.now();
     this.look.yaw = 0;
+    this.arrived = false;
     if (this.camera.fov !== fov) {
       this.camera.fov = fov;
       this.camera.updateProjectionMatrix();
     }
-    this.moved = true;
+    this.lookAnew();
+  }
+
+  // How far the eyes are on their way to where the character stands, 0 to 1.
+  get share() {
+    return Math.min(1, (performance.now() - this.since) / GLIDE);
   }
 
   now() {
-    const share = Math.min(1, (performance.now() - this.since) / GLIDE);
+    const { share } = this;
     const way = this.from.way.clone().lerp(this.to.way, share).normalize();
     return { eye: this.from.eye.clone().lerp(this.to.eye, share), way };
   }
@@ -204,7 +224,11 @@ export class FirstPerson {
     if (place !== this.standing) this.stand(x, z);
     this.standing = place;
     const shown = this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse).multiply(this.world.matrixWorld);
-    for (const mesh of this.drawn) mesh.visible = mesh.userData.seen && inPicture(mesh.userData.box, shown);
+    // One's own body is ahead of eyes that are still on their way: they would see its back.
+    const own = this.share < 1 ? this.state.mine?.node : undefined;
+    for (const mesh of this.drawn) {
+      mesh.visible = mesh.userData.seen && (own === undefined || mesh.userData.thing !== own) && inPicture(mesh.userData.box, shown);
+    }
   }
 
   stand(x, z) {
@@ -220,8 +244,8 @@ export class FirstPerson {
 
   frame(time) {
     if (!this.to) return;
-    const gliding = performance.now() - this.since < GLIDE + 50;
-    if (!gliding && !this.moved && !this.spinning) return;
+    if (this.arrived && !this.moved && !this.spinning) return;
+    this.arrived = this.share === 1; // of slow frames, the one after the eyes have arrived is drawn too
     this.moved = false;
     if (this.spinning) this.look.yaw += 1.5;
     this.aim();
@@ -235,19 +259,50 @@ export class FirstPerson {
     if (!this.to) return 0;
     this.aim();
     this.camera.setViewOffset(WIDTH, HEIGHT, x, y, 1, 1);
-    const [background, found] = [this.scene.background, new Uint8Array(4)];
+    const [found] = this.numbers(this.pixel, 1, 1);
+    this.camera.clearViewOffset();
+    return found;
+  }
+
+  // The ids of the things at the pixels of a target, row by row from below.
+  numbers(target, width, height) {
+    const [background, found] = [this.scene.background, new Uint8Array(4 * width * height)];
     this.scene.background = null;
     this.scene.overrideMaterial = NUMBERED;
-    this.renderer.setRenderTarget(this.pixel);
+    this.renderer.setRenderTarget(target);
     this.renderer.setClearColor(0, 1);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
-    this.renderer.readRenderTargetPixels(this.pixel, 0, 0, 1, 1, found);
+    this.renderer.readRenderTargetPixels(target, 0, 0, width, height, found);
     this.renderer.setRenderTarget(null);
     this.scene.overrideMaterial = null;
     this.scene.background = background;
-    this.camera.clearViewOffset();
-    return found[0] + (found[1] << 8) + (found[2] << 16);
+    return Array.from({ length: width * height }, (_, n) => found[4 * n] + (found[4 * n + 1] << 8) + (found[4 * n + 2] << 16));
+  }
+
+  // The things in the picture: id -> left, top, right and bottom edge, as shares of the picture.
+  inSight() {
+    const boxes = new Map();
+    if (!this.to) return boxes;
+    this.aim();
+    const { width, height } = this.seen;
+    this.numbers(this.small, width, height).forEach((id, n) => {
+      const [x, y] = [n % width, height - 1 - Math.floor(n / width)];
+      const [left, top, right, bottom] = boxes.get(id) ?? [1, 1, 0, 0];
+      boxes.set(id, [Math.min(left, x / width), Math.min(top, y / height), Math.max(right, (x + 1) / width), Math.max(bottom, (y + 1) / height)]);
+    });
+    return boxes;
+  }
+
+  // Puts a frame around a thing in the picture.
+  mark(id) {
+    const box = this.inSight().get(id);
+    this.frameOf.hidden = !box;
+    if (!box) return;
+    const { offsetWidth, offsetHeight } = this.renderer.domElement;
+    const [left, top, right, bottom] = box;
+    Object.assign(this.frameOf.style, { left: `${left * offsetWidth}px`, top: `${top * offsetHeight}px` });
+    Object.assign(this.frameOf.style, { width: `${(right - left) * offsetWidth}px`, height: `${(bottom - top) * offsetHeight}px` });
   }
 
   // Looks around for some seconds and gives the pictures a second.
@@ -261,11 +316,13 @@ export class FirstPerson {
 
   lookUp(degrees) {
     this.look.pitch = Math.max(-75, Math.min(75, this.look.pitch + degrees));
-    this.moved = true;
+    this.lookAnew();
   }
 
   turnHeld(degrees) {
     this.turned += degrees;
+    const held = this.state.mine.holding;
+    this.say(held.length ? say("turned_held", { thing: titled(this.state, held[0]) }) : say("nothing_to_turn"));
     for (const [key, meshes] of this.placed) {
       if (!this.state.mine.holding.includes(Number(key.split(" ")[0]))) continue;
       for (const mesh of meshes) {

@@ -71,7 +71,8 @@ export class FloorPlan {
     group.appendChild(made("path", { d: "M 0 -0.55 L 0.24 -0.1 L -0.24 -0.1 Z", transform: `rotate(${yaw})` }));
     group.appendChild(made("circle", { r: 0.26 }));
     const held = agent.holding.map((id) => name(state.things, id)).join(", ");
-    if (held) group.appendChild(made("text", { x: 0, y: 0.62, class: "held" }, held));
+    // Of two who stand together, one has it above and the other below, so that both can be read.
+    if (held) group.appendChild(made("text", { x: 0, y: agent.agent === state.me ? 0.62 : -0.45, class: "held" }, held));
     return group;
   }
 

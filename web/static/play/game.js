@@ -4,21 +4,25 @@ import { FloorPlan } from "./floor_plan.js";
 import { Menu } from "./menu.js";
 import { ObjectPanels } from "./object_panels.js";
 import { State } from "./state.js";
-import { name, refused, retold, say, spoken, written } from "./words.js";
+import { clockTime, ending, happened, left, name, refused, say, spoken, written } from "./words.js";
 
 const root = document.getElementById("game");
 const state = new State();
 const said = document.getElementById("said");
 const banner = document.getElementById("banner");
 const sure = document.getElementById("sure");
+const clock = document.getElementById("time");
 let busy = false; // a decision is on its way
 let walking = null; // the thing that one goes all the way to
 let view = null; // first person
 let again = 0; // how often the same move is still wanted
 let [shown, shownAt] = ["", -1]; // what was said last of the other person, and at which tick
 let latest = null; // the last message about the game
+let sentAt = -1; // the tick in which one decided last, on this page
+let late = false; // one waited in the last tick, because one took too long
+let ended = false; // the end was shown
 
-const choose = (id, from) => state.things.has(id) && state.things.get(id).seen && menu.open(id, state, from);
+const choose = (id, from) => !state.over && state.things.get(id)?.seen && menu.open(id, state, from);
 const menu = new Menu(decide, walk);
 const plan = new FloorPlan(document.getElementById("plan"), choose);
 const panels = root.dataset.interface === "symbolic" ? new ObjectPanels(choose) : null;
@@ -33,6 +37,7 @@ function send(action, ids = []) {
   if (busy || state.over || state.tick < 0 || waits()) return false;
   const act = action ? written(action, ids, state.things) : null;
   busy = connection.send({ type: "act", tick: state.tick, act });
+  if (busy) sentAt = state.tick;
   if (busy) said.textContent = action ? say("acting", { act: spoken(action, ids, state.things) }) : say("waiting");
   return busy;
 }
@@ -52,6 +57,10 @@ function walk(id) {
 
 // The same move a few times, a tick each.
 function several(action, times = 1) {
+  if (action && !state.over && !state.can(action)) {
+    said.textContent = say(action === "Walkforward" ? "blocked" : "not_now");
+    return;
+  }
   if (decide(action)) again = times > 1 ? [action, times - 1] : 0;
 }
 
@@ -75,6 +84,7 @@ function receive(message) {
   if (message.type === "picked") return view?.picked?.(message.id);
   busy = false;
   latest = message;
+  late = Boolean(state.other) && message.type === "tick" && message.tick === state.tick + 1 && sentAt !== state.tick;
   state.take(message);
   if (message.type === "begin") begin(message);
   plan.update(state);
@@ -107,19 +117,28 @@ function tell(kind, text, ...more) {
   banner.replaceChildren(text, ...more);
 }
 
+// What is fixed at the bottom of the window says how high it is, so that the page leaves room for it.
+for (const id of ["news", "menu"]) {
+  const fixed = document.getElementById(id);
+  new ResizeObserver(() => document.documentElement.style.setProperty(`--${id}`, `${fixed.offsetHeight}px`)).observe(fixed);
+}
+
 function show() {
-  const left = state.limit - state.tick;
   root.dataset.tick = state.tick;
-  document.getElementById("clock").textContent = say("clock", { tick: state.tick, limit: state.limit, left, helper: say(state.helper === "none" ? "helper_none" : "helper_some") });
+  document.getElementById("clock").textContent = say("clock", { tick: state.tick, limit: state.limit, left: state.limit - state.tick, helper: company() });
   showTime();
   showGoal();
   showHands();
-  for (const button of document.querySelectorAll("[data-move]")) {
+  for (const button of document.querySelectorAll("[data-look]")) {
+  button.addEventListener("click", () => view?.lookUp?.(Number(button.dataset.look)));
+}
+for (const button of document.querySelectorAll("[data-move]")) {
     const move = button.dataset.move;
     button.disabled = state.over || state.other === "awaited" || (move !== "" && !state.can(move));
     if (move === "StandUp") button.hidden = !state.can(move);
   }
   for (const name of ["finish", "save"]) document.getElementById(name).disabled = state.over;
+  for (const button of document.querySelectorAll("[data-look]")) button.disabled = state.over;
   said.textContent = lastActions();
   if (state.over) showEnd();
   else if (state.port) tell("note", say("port", { port: state.port, token: state.token }));
@@ -127,25 +146,38 @@ function show() {
   if (!state.over) showLost();
 }
 
+// Whether one is alone, has a helper, or plays with a person; who is not there yet helps nobody.
+function company() {
+  if (state.helper !== "person") return say(state.helper === "none" ? "helper_none" : "helper_some");
+  if (state.other !== "here") return say(state.other === "gone" ? "helper_left" : "not_here");
+  return say(state.me === 0 ? "helper_person" : "helper_you");
+}
+
 // Of a game for two: whether the other person is there, said when it changes and until the next tick.
 function showOther() {
   if (state.other === shown && state.tick === shownAt) return;
   if (state.other === "awaited") showInvitation();
-  else if (state.other === "gone") tell("note", say("other_left"));
-  else if (state.other !== shown) tell("good", say(shown === "gone" ? "other_back" : "other_here"));
-  else banner.hidden = true;
+  else if (state.other === "gone" || state.other !== shown) {
+    const news = state.other === "gone" ? "other_left" : shown === "gone" ? "other_back" : "other_here";
+    const text = say(news, { seconds: state.patience });
+    tell(news === "other_left" ? "note" : "good", text);
+    if (state.other !== shown) said.textContent = text;
+  } else banner.hidden = true;
   [shown, shownAt] = [state.other, state.tick];
 }
 
 // The time that is left, where there is a limit; the last minute is also said.
 function showTime() {
-  if (state.until === null || state.until === undefined || state.over) return;
-  const left = Math.max(0, Math.ceil((state.until - performance.now()) / 1000));
-  const clock = document.getElementById("time");
-  clock.hidden = false;
-  clock.textContent = say("left_time", { time: `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}` });
-  clock.classList.toggle("short", left <= 60);
-  if (left === 60) said.textContent = say("one_minute");
+  if (state.over) return;
+  const limited = state.until !== null && state.until !== undefined;
+  const turn = state.decideUntil ? left(state.decideUntil) : null;
+  clock.hidden = !limited && turn === null;
+  if (clock.hidden) return;
+  const all = limited ? left(state.until) : Infinity;
+  const lines = [turn === null ? "" : say("decide_within", { time: clockTime(turn) }), limited ? say("left_time", { time: clockTime(all) }) : ""];
+  clock.textContent = lines.filter(Boolean).join(" ");
+  clock.classList.toggle("short", all <= 60 || turn !== null);
+  if (all === 60) said.textContent = say("one_minute");
 }
 
 function showGoal() {
@@ -199,12 +231,21 @@ function showHands() {
     if (!agent.holding.length) line.append(say("empty"));
     return line;
   });
+  for (const [agent, held] of state.held) if (!state.agents.some((each) => each.agent === agent)) lines.push(lastHeld(held));
   document.getElementById("hands").replaceChildren(...lines);
+}
+
+// What the other held when one saw it last.
+function lastHeld(held) {
+  const line = document.createElement("li");
+  line.className = "other";
+  line.textContent = say("held_last", { things: held.map((id) => name(state.things, id)).join(", ") || say("nothing_held") });
+  return line;
 }
 
 function heldButton(id) {
   const button = document.createElement("button");
-  Object.assign(button, { type: "button", className: "thing close", textContent: name(state.things, id) });
+  Object.assign(button, { type: "button", className: "thing close", textContent: name(state.things, id), disabled: state.over });
   button.dataset.id = id;
   button.addEventListener("click", () => choose(id));
   return button;
@@ -213,43 +254,46 @@ function heldButton(id) {
 function lastActions() {
   if (state.decided.length && state.tick === 0) return whoDecided();
   if (state.tick === 0) return say("begin");
-  const lines = state.agents.filter((agent) => agent.last).map((agent) => {
-    const who = say(agent.agent === state.me ? "you" : "the_other");
-    const failure = agent.last.failure;
-    return say(failure ? "failed" : "did", { who, act: retold(agent.last.instruction, state.things), why: failure?.words });
-  });
+  const lines = state.agents.map((agent) => happened(agent, state, late)).filter(Boolean);
   if (state.decided.length && !state.over) lines.push(whoDecided());
   return lines.join(" ");
 }
 
 const whoDecided = () => say(state.decided.includes(state.me) ? "decided" : "your_turn");
 
-function ending() {
-  if (state.success) return "reached";
-  if (state.goal.some((each) => each.lost)) return "lost";
-  if (state.end === "FINISHED") return state.ended_by === state.me ? "you" : "other";
-  if (state.end === "TIMED_OUT" && state.ended_by === 0) return "time";
-  return state.end ? "helper" : "ticks";
-}
-
-// Why it is over, in words.
-function why() {
-  const after = say(state.tick === 1 ? "after_one" : "after", { tick: state.tick });
-  return say(`end_${ending()}`, { after });
-}
 
 const isStudied = () => !state.go_on.startsWith("/play/"); // whose helper is not to be known
 
+// The end is also said in the line at the bottom, and comes into view once.
 function showEnd() {
-  const text = `${why()} `;
-  const episode = isStudied() ? [] : [link(`/play/game/${root.dataset.game}/episode.jsonl`, say("episode")), " · "];
-  tell(state.success ? "good" : "note", text, ...episode, link(state.go_on, say("go_on")));
+  const text = ending(state);
+  const episode = isStudied() ? [] : [" · ", link(`/play/game/${root.dataset.game}/episode.jsonl`, say("episode"))];
+  tell(state.success ? "good" : "note", `${text} `, link(state.go_on, say(isStudied() ? "go_on" : "another")), ...episode);
+  said.textContent = text;
+  clock.hidden = true;
+  if (sure.open) sure.close();
+  if (ended) return;
+  ended = true;
+  banner.scrollIntoView({ block: "center" });
+  banner.focus({ preventScroll: true });
 }
 
 function showInvitation() {
   if (!state.code) return tell("note", `${say("wait_for")} `, ...(isStudied() ? [] : [link("/play/pair", say("wait_again"))]));
   const address = `${location.origin}/play/join/${state.code}`;
-  return tell("note", `${say("invite")} `, link(address, address));
+  return tell("note", `${say("invite")} `, link(address, address), " ", copying(address));
+}
+
+// A button that copies the invitation; where a browser does not allow that, it marks the link to copy by hand.
+function copying(address) {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", id: "copy", className: "plain", textContent: say("copy") });
+  button.addEventListener("click", () => {
+    const marked = () => getSelection().selectAllChildren(banner.querySelector("a"));
+    const copied = navigator.clipboard?.writeText(address) ?? Promise.reject(new Error("no clipboard"));
+    copied.then(() => { button.textContent = say("copied"); }, () => { marked(); button.textContent = say("marked"); });
+  });
+  return button;
 }
 
 function link(address, text) {
@@ -274,10 +318,10 @@ function trouble(fault) {
 const KEYS = { ArrowLeft: "Turnleft", ArrowRight: "Turnright", ArrowUp: "Walkforward" };
 
 document.addEventListener("keydown", (event) => {
-  const typing = event.target.closest("input, select, textarea, #view, dialog");
-  if (typing || event.ctrlKey || event.altKey || event.metaKey) return;
+  const typing = event.target.closest("input, select, textarea, dialog");
+  if (typing || view?.element || event.ctrlKey || event.altKey || event.metaKey) return; // a view has keys of its own
   if (event.key === ".") decide("");
-  else if (event.key in KEYS && state.can(KEYS[event.key])) decide(KEYS[event.key]);
+  else if (event.key in KEYS) several(KEYS[event.key]);
   else return;
   event.preventDefault();
 });

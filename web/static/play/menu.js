@@ -1,5 +1,7 @@
 // What one can do with a thing: a panel with a button for each legal instruction about it.
-import { name, say, spoken, stateWord } from "./words.js";
+import { say, spoken, stateWord, titled } from "./words.js";
+
+const USUAL = new Set(["CLEAN", "PLUGGED_IN"]); // states that nobody asks about
 
 // Of pieces of floor that nobody can tell apart, the first.
 function distinct(options, state) {
@@ -21,7 +23,7 @@ export class Menu {
     this.id = null;
     this.from = null;
     document.getElementById("menu-close").addEventListener("click", () => this.close());
-    this.panel.addEventListener("keydown", (event) => event.key === "Escape" && this.close());
+    document.addEventListener("keydown", (event) => event.key === "Escape" && this.close());
   }
 
   open(id, state, from = document.activeElement) {
@@ -36,16 +38,16 @@ export class Menu {
     if (this.panel.hidden) return;
     this.panel.hidden = true;
     this.id = null;
-    if (this.from?.isConnected && !this.from.disabled) this.from.focus();
-    else document.getElementById("main").focus();
+    const back = [this.from, document.getElementById("view"), document.getElementById("main")];
+    back.find((each) => each?.isConnected && !each.disabled && each !== document.body).focus({ preventScroll: true });
   }
 
   fill(state) {
     const id = this.id; // the menu forgets it when it closes, before it does what was pressed
     const thing = state.things.get(id);
-    const states = (thing.states ?? []).map(stateWord).join(", ");
-    this.title.textContent = `${name(state.things, id)}${states ? ` (${states})` : ""}`;
-    const options = state.over ? [] : distinct(state.about(id), state);
+    const states = (thing.states ?? []).filter((each) => !USUAL.has(each)).map(stateWord).join(", ");
+    this.title.textContent = `${titled(state, id)}${states ? ` (${states})` : ""}`;
+    const options = distinct(state.about(id), state);
     const buttons = options.map(([action, ids]) => {
       const made = this.button(spoken(action, ids, state.things), () => this.act(action, ids));
       made.dataset.instruction = [action, ...ids].join(" ");
@@ -57,7 +59,9 @@ export class Menu {
     }
     const nothing = document.createElement("p");
     nothing.textContent = say("nothing");
+    const inside = this.actions.contains(document.activeElement);
     this.actions.replaceChildren(...(buttons.length ? buttons : [nothing]));
+    if (inside) (this.actions.querySelector("button") ?? document.getElementById("menu-close")).focus({ preventScroll: true });
   }
 
   button(text, done) {
@@ -73,7 +77,7 @@ export class Menu {
 
   update(state) {
     if (this.panel.hidden) return;
-    if (!state.things.get(this.id)?.seen) this.close();
+    if (state.over || !state.things.get(this.id)?.seen) this.close();
     else this.fill(state);
   }
 }

@@ -1,6 +1,7 @@
 // All things as buttons (panels B, C, D): enabled when something can be done with them, green when close.
 import { name, say } from "./words.js";
 
+const PEOPLE = -1; // stands for the room of people in the list of rooms
 const PANELS = ["rooms", "furniture", "things"];
 
 export class ObjectPanels {
@@ -32,7 +33,7 @@ export class ObjectPanels {
   update(state) {
     this.state = state;
     const text = this.find.value.trim().toLowerCase();
-    const chosen = [...state.things.values()].filter((thing) => thing.seen && this.wants(thing, state, text));
+    const chosen = [...state.things.values()].filter((thing) => this.wants(thing, state, text));
     for (const thing of chosen) this.dress(this.buttons.get(thing.id) ?? this.button(thing, state), thing, state);
     document.getElementById("none").hidden = chosen.length > 0;
     const order = chosen.map((thing) => `${thing.id}:${thing.room}`).join();
@@ -40,17 +41,22 @@ export class ObjectPanels {
     this.shown = order;
   }
 
+  // Things that were seen in another room are listed where one looks for them: as names, with that room.
   wants(thing, state, text) {
-    if (this.which.value === "close" && !thing.close) return false;
-    if (this.which.value === "goal" && !state.wanted.has(thing.className)) return false;
+    const which = this.which.value;
+    if (!thing.seen && !(thing.room && (text || which === "goal"))) return false;
+    if (which === "close" && !thing.close) return false;
+    if (which === "goal" && !state.wanted.has(thing.className) && thing.group !== "rooms") return false;
     return !text || `${name(state.things, thing.id)} ${thing.className}`.replaceAll("_", " ").includes(text);
   }
 
   dress(button, thing, state) {
-    button.disabled = state.over || !state.usable.has(thing.id);
-    button.classList.toggle("close", thing.close);
+    button.disabled = state.over || !thing.seen || !state.usable.has(thing.id);
+    button.classList.toggle("close", thing.seen && thing.close);
     button.classList.toggle("wanted", state.wanted.has(thing.className));
-    const told = [this.where(thing, state), thing.close ? say("reach") : ""].filter(Boolean).join(" · ");
+    const told = thing.seen
+      ? [this.where(thing, state), thing.close ? say("reach") : ""].filter(Boolean).join(" · ")
+      : say("seen_before", { room: name(state.things, thing.room) });
     if (button.lastChild.textContent !== told) button.lastChild.textContent = told;
   }
 
@@ -69,12 +75,12 @@ export class ObjectPanels {
       const groups = new Map();
       const some = chosen.filter((thing) => (thing.group === "people" ? "rooms" : thing.group) === panel);
       for (const thing of some.sort((a, b) => a.className.localeCompare(b.className) || a.id - b.id)) {
-        const room = panel === "rooms" ? 0 : thing.room;
+        const room = panel !== "rooms" ? thing.room : thing.group === "people" ? PEOPLE : 0;
         if (!groups.has(room)) groups.set(room, []);
         groups.get(room).push(this.buttons.get(thing.id));
       }
       const here = state.mine?.room ?? 0;
-      const rooms = [...groups.keys()].sort((a, b) => (b === here) - (a === here) || a - b);
+      const rooms = [...groups.keys()].sort((a, b) => (b === here) - (a === here) || (a < 0) - (b < 0) || a - b);
       const lists = rooms.flatMap((room) => this.group(room, groups.get(room), state));
       document.getElementById(panel).replaceChildren(...lists);
     }
@@ -86,7 +92,7 @@ export class ObjectPanels {
     for (const button of buttons) list.appendChild(document.createElement("li")).appendChild(button);
     if (!room) return [list];
     const head = document.createElement("h3");
-    head.textContent = name(state.things, room);
+    head.textContent = room === PEOPLE ? say("people") : name(state.things, room);
     return [head, list];
   }
 }

@@ -1,6 +1,6 @@
 // First person by pictures of Hearth's own renderer, for machines without WebGL: the server says what a click is on.
 import { viewKeys } from "./view_keys.js";
-import { name, say } from "./words.js";
+import { say, titled } from "./words.js";
 
 const AGAIN = 1000; // milliseconds
 
@@ -20,7 +20,7 @@ export class FirstPerson {
       const [x, y] = [(event.clientX - box.left) / box.width * 640, (event.clientY - box.top) / box.height * 480];
       send({ type: "pick", x: Math.floor(x), y: Math.floor(y) });
     });
-    viewKeys(this, element, { act, save, finish });
+    viewKeys(this, { act, save, finish });
     send({ type: "picture" });
   }
 
@@ -53,7 +53,7 @@ export class FirstPerson {
 
   show(id) {
     this.label.hidden = !id;
-    if (id) this.label.textContent = name(this.state.things, id);
+    if (id) this.label.textContent = titled(this.state, id);
   }
 
   lookUp() {}

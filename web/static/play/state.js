@@ -7,6 +7,7 @@ export class State {
     this.agents = [];
     this.goal = [];
     this.tick = -1;
+    this.held = new Map(); // what each other character held when it was seen last
   }
 
   take(message) {
@@ -15,6 +16,7 @@ export class State {
       Object.assign(this, { partial: message.partial, code: message.code, port: message.port, token: message.token, characters: message.characters });
       this.until = message.left === null ? null : performance.now() + 1000 * message.left;
       this.things.clear();
+      this.held.clear();
       this.trails = new Map(Object.entries(message.trails).map(([who, way]) => [Number(who), way]));
     }
     for (const [id, [className, group, box, words]] of Object.entries(message.things)) {
@@ -24,7 +26,10 @@ export class State {
       Object.assign(this.things.get(Number(id)), { room, relation, holder, states, close: Boolean(close), seen: true });
     }
     for (const id of message.gone) this.things.get(id).seen = false;
-    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "ended_by", "decided", "go_on", "other"]) this[key] = message[key];
+    for (const key of ["tick", "goal", "legal", "agents", "over", "success", "end", "ended_by", "decided", "go_on", "other", "patience"]) this[key] = message[key];
+    const { decide_within: within } = message;
+    this.decideUntil = within === null || within === undefined ? null : performance.now() + 1000 * within;
+    for (const agent of this.agents) if (agent.agent !== this.me) this.held.set(agent.agent, agent.holding);
     if (message.type === "tick") this.follow();
     this.usable = new Set(Object.values(this.legal).flat(2));
     this.wanted = new Set(this.goal.flatMap((each) => each.classes));
