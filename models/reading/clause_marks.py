@@ -34,12 +34,20 @@ _WHERE = re.compile(
     r" (?:right )?place for (.+))$"
 )
 _OFF = re.compile(r"\b((?:turn|switch|put|shut)(?:s|ed|ing)? (?:the |it|that )(?:[a-z]+ ){0,3}?)of(?= again|$|,| and )")
+_BODY = re.compile(r"\b(your|my) (face|hands?|hair|feet|body)\b(.+?)\b(dry|pat|rub)( off)? (?:it|them)\b")
+_SPOT = re.compile(
+    r"\b(in|on|at|into|onto|to) the (?:very |right in the )?(?:middle|center|centre|edge|corner|end|foot|head|side"
+    r"|left side|right side|back|front|bottom) of (?=the |my |your |our |a |an |this |that )"
+)
+"""A part of a place: a thing in the middle of a table lies on the table."""
+
 _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 
 
 def marked(text: str) -> str:
     """Return a sentence in small letters with the comma behind its first clause, where it is certain."""
     text = _OFF.sub(r"\1off", _THERE_NEEDS.sub(r"\1 \2 ", text))
+    text = _SPOT.sub(r"\1 ", _BODY.sub(r"\1 \2\3\4\5 \1 \2", text))
     if found := _WHERE.match(text):
         return f"put {found[2] or found[3]} to {found[1]}"
     for pattern in (_UNMARKED, _DOING, _DONE, _TOOL):

@@ -57,8 +57,10 @@ _MANY = frozenset(
     }
 )
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
+_SPILLED = re.compile(r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
 _HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
+_HAS_LID = ("CAN_OPEN",)
 _OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
 _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
@@ -190,6 +192,8 @@ class ClauseReader:
     def stated(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
         found: list[Spoken] = []
+        if spilled := _SPILLED.match(text):
+            return self.named(spilled[1]) or Clause()
         text = _THERE_IS.sub(r"\2 \1", text)
         for name in things_in(self.known, text):
             if refs := self.scene.some((name,), 1):
@@ -285,8 +289,10 @@ class ClauseReader:
         """Return the furniture that was spoken of last, where it has a door of its own."""
         if words.startswith("its "):
             return next((each.refs for each in spoken if self.known.has(each.refs[0].name, "CAN_OPEN")), ())
-        last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
-        return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
+        is_furniture = spoken and (spoken[0].is_place or spoken[0].action == "Open" or words == "the lid")
+        last = spoken[0].refs if is_furniture else ()
+        needs = _HAS_LID if words == "the lid" else _HAS_DOOR
+        return last if all(self.known.has(ref.name, need) for ref in last for need in needs) else ()
 
     def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""

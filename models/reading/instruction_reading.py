@@ -13,7 +13,7 @@ from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseRe
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
-from hearth.models.reading.request_table import words
+from hearth.models.reading.request_table import hints, words
 from hearth.models.reading.rewordings import orders
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
@@ -87,7 +87,8 @@ _WISH = re.compile(
     r"|know|hear|listen|be|cook|feel"
     r"|write|sit|lie|play|enjoy|study)\b"
 )
-_VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
+_VERB = re.compile(r"((?:pick up|put down|take out|take off|(?:turn|switch) (?:on|off)|turn|switch|[a-z]+)) ")
+_SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
 
 class Reading(NamedTuple):
@@ -123,13 +124,23 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         if plain:
             reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
     is_idle = not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found)
-    if is_idle and (wish := _STATEMENT.match(whole.lower().strip())):
+    wish = _STATEMENT.match(whole.lower().strip())
+    if is_idle and wish:
         reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
+    elif is_idle and not wish and (hint := _hinted(whole)):
+        reader.sentence(hint)  # `I'm thirsty`
     left = len(text[LONGEST:].split())
     reading = reader.reading()
     return reading._replace(unread=(*reading.unread, f"{left:,} more words")) if left else reading
+
+
+def _hinted(text: str) -> str:
+    """Return the request that a text hints at; "" where it hints at none."""
+    plain = " ".join(text.lower().replace("\u2019", "'").split()).strip(" .!?")
+    found = ((pattern.fullmatch(plain), request) for pattern, request in hints())
+    return next((match.expand(request) for match, request in found if match), "")
 
 
 class _Text:
@@ -369,5 +380,7 @@ def is_aside(text: str) -> bool:
 
 
 def _verb_of(text: str) -> str:
+    if found := _SWITCHED.fullmatch(plain_words(text)):
+        return f"turn {found[1]}"
     found = _VERB.match(plain_words(text))
     return found[1] if found else ""

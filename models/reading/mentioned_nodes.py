@@ -70,6 +70,8 @@ class Scene:
         classes = [name for name in mention.classes if fits(self.known, name, needs)]
         if self.world is None:
             return tuple(ObjectRef(classes[0], n) for n in range(1, max(mention.count, 1) + 1)) if classes else ()
+        if classes and self._is_other(classes[0], mention):
+            return ()
         found = self._nodes(classes, mention)
         left_out = {node for other in mention.others for node in self._nodes(other.classes, other)}
         ordered = self._ordered([node for node in found if node not in left_out], action)
@@ -80,6 +82,11 @@ class Scene:
             if mention.count == SEVERAL and self._is_carried(ordered):
                 ordered = ordered[: MOST_CARRIED if action != "Grab" else MOST_HELD]
         return tuple(map(self._ref, ordered)) if len(ordered) <= MOST else ()
+
+    def _is_other(self, name: str, mention: Mention) -> bool:
+        """Return whether a class would take the place of one that the home has, but that does not fit."""
+        first = mention.classes[0]
+        return name != first and name in self.known.stand_ins(first) and self.has(first)
 
     def _to_change(self, nodes: list[int], action: str) -> list[int]:
         """Return the things on which an act changes something; all where it changes none."""
@@ -137,6 +144,9 @@ class Scene:
         assert self.world is not None
         found: list[int] = []
         is_all = mention.count <= 0 and mention.is_group
+        if mention.count > 1:  # six glasses are six of one class, where the home has as many
+            enough = [name for name in classes if len(self._named(name)) >= mention.count]
+            classes = [*enough, *(name for name in classes if name not in enough)]
         for is_placed in (True, False) if mention.places else (False,):
             for name in classes:
                 nodes = [i for i in self._named(name) if i not in found]

@@ -170,6 +170,12 @@ def words() -> Words:
 
 
 @cache
+def hints() -> tuple[tuple[re.Pattern[str], str], ...]:
+    """Return wishes that are only hinted at, each with the request that it stands for (a template of its groups)."""
+    return tuple((re.compile(pattern), str(request)) for pattern, request in _word_data()["hints"].items())
+
+
+@cache
 def acts_of(kind: str) -> frozenset[str]:
     """Return the names of the acts of a kind of `request_words.yaml`, such as `held`."""
     return frozenset(_word_data()[kind])

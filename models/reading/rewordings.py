@@ -117,8 +117,7 @@ _WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
 _ROOM_FIRST = re.compile(
-    r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room"
-    r"|[a-z]+ bedroom)),? "
+    r"(?P<clause>.+?) (?P<near>in(?:to)?|by|near|next to|beside) (?P<room>(?:the|my|your) [a-z]+(?: [a-z]+)?),? "
     r"(?P<to>on|in|onto|into|on top of|inside|next to) (?P<place>.+)"
 )
 _PREPOSITION = re.compile(
@@ -284,7 +283,8 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
     if found := _STATE_IN.fullmatch(text):
         yield (f"{found['np']} in {found['room']} {found['state']}",)
     if (found := _ROOM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
-        yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
+        near = "in" if found["near"] == "into" else found["near"]
+        yield (f"{found['clause']} {found['to']} {found['place']} {near} {found['room']}",)
 
 
 def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
