@@ -39,6 +39,8 @@ DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
 _CLOSE = "Close"
+_CLEANING = frozenset({"Wash", "Wipe", "Scrub", "Rinse"})
+_TOOLS = frozenset({"cleaning_tool", "cleaning_agent", "towel"})
 _ROOM = frozenset({"room"})
 _MANY = frozenset(
     {
@@ -58,6 +60,8 @@ _MANY = frozenset(
 )
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _SPILLED = re.compile(r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$")
+_FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
+_PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
 _HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
 _HAS_LID = ("CAN_OPEN",)
@@ -202,9 +206,13 @@ class ClauseReader:
 
     def named(self, text: str) -> Clause | None:
         """Return a part that only names things, of which the next may say more; None where it does not."""
-        mentions = mentions_in(self.known, plain_words(text))
+        plain = _PLACE_IN_ORDER.sub("", plain_words(text))
+        is_bare = _FIRST_WORDS.sub("", text.strip(" ,.!?")).startswith(plain)
+        mentions = mentions_in(self.known, plain)
         refs = [self.scene.things(each, frozenset()) for each in mentions if not each.back]
-        return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None
+        if not refs or not all(refs):
+            return None
+        return Clause(spoken=tuple(Spoken(each, "") for each in refs), named=plain if is_bare else "")
 
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
         lacking: dict[str, str] = {}
@@ -259,6 +267,8 @@ class ClauseReader:
                 refs = self._another(needs, spoken)
             elif mention.back:
                 refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
+                if mention.count > 0 and refs:
+                    refs = refs[: mention.count] if len(refs) >= mention.count else self._by_class((refs[0].name,), mention.count)
             elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
                 refs = own
             elif own := self._meant_before(mention, spoken):
@@ -283,7 +293,9 @@ class ClauseReader:
         is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
         if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
             return ()
-        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes), ())
+        first, stand_ins = mention.classes[0], self.known.stand_ins(mention.classes[0])
+        own = [name for name in mention.classes if not (name in stand_ins and self.scene.has(first))]
+        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in own), ())
 
     def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
         """Return the furniture that was spoken of last, where it has a door of its own."""
@@ -297,6 +309,8 @@ class ClauseReader:
     def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""
         groups = list(spoken[:1] if needs == _ROOM else spoken)
+        if action in _CLEANING:
+            groups.sort(key=lambda each: each.action == "Grab" and self._is_tool(each))
         if action == _CLOSE:
             groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
         elif needs.isdisjoint(_OPENS):
@@ -304,6 +318,9 @@ class ClauseReader:
         if is_many:
             groups.sort(key=lambda each: len(each.refs) < 2)
         return next((each.refs for each in groups if all(fits(self.known, ref.name, needs) for ref in each.refs)), ())
+
+    def _is_tool(self, spoken: Spoken) -> bool:
+        return all(fits(self.known, ref.name, _TOOLS) for ref in spoken.refs)
 
     def _made(
         self, way: Sequence[ActTemplate], things: Mapping[str, Refs], count: int, text: str

@@ -14,10 +14,11 @@ from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
 from hearth.models.reading.request_table import hints, words
-from hearth.models.reading.rewordings import orders
+from hearth.models.reading.rewordings import done_first, orders
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
+from hearth.models.reading.telegrams import is_unused, names_furniture, request_of
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
@@ -35,7 +36,7 @@ SUMMED_UP = 3
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?(?:afterwards|after that),? |;? and also |,? and |,? but |,? plus "
     r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
     r"|can|could|would|make|let's|lock"
     r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
@@ -200,7 +201,8 @@ class _Text:
         for first, later in orders(text):
             main = self._read(later, spoken)
             known = (*_all_spoken(main), *spoken)
-            ways = (self._read(each, known) for each in (first, f"make sure {first}"))
+            texts = (first, f"make sure {first}", done_first(self.clauses.known, first))
+            ways = (self._read(each, known) for each in texts if each)
             one = next((each for each in ways if each and any(clause.acts for clause in each)), None)
             two = self._read(later, (*_all_spoken(one), *known)) if one else None
             if one and two and any(each.acts for each in two):
@@ -215,6 +217,9 @@ class _Text:
         stated = self.clauses.named(found["title"]) or self.clauses.stated(found["title"])
         read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            is_named = self.clauses.named(found["title"]) and not self._is_furniture(found["title"])
+            if is_named and self._is_furniture(found["rest"]):
+                return self._put_in(found["rest"], found["title"], spoken)  # `towel: rack`
             if (placed := self._put_in(found["title"], found["rest"], spoken)) is not None:
                 return placed
             start = _BEGINNING.match(found["title"])
@@ -247,8 +252,23 @@ class _Text:
         return (stated, *read) if read else None
 
     def _add(self, clauses: Sequence[Clause]) -> None:
+        clauses = clauses if self.is_long else self._telegraphed(clauses)
         self.found += clauses
         self.spoken = (*_all_spoken(clauses), *self.spoken)[:12]
+
+    def _telegraphed(self, clauses: Sequence[Clause]) -> list[Clause]:
+        """Return clauses with the acts that bare names among them stand for."""
+        found, known = list(clauses), self.clauses.known
+        if len(found) < 2:
+            return found
+        for at, clause in enumerate(found):
+            is_put_next = at + 1 < len(found) and names_furniture(known, found[at + 1])
+            if is_unused(clause, found) and not (is_put_next and not names_furniture(known, clause)):
+                before = (*_all_spoken(found[:at]), *self.spoken)
+                request = request_of(known, clause, before)
+                read = self.clauses.read(request, before, steps=False) if request else None
+                found[at] = read or clause
+        return found
 
     def _read(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a text; None where a part of it is not understood."""
@@ -300,10 +320,10 @@ class _Text:
             if BAN.match(text):
                 return Clause(forbidden=unknown_ban(text))
             return self.clauses.stated(text)
-        if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
-            return Clause()
         if (named := self.clauses.named(text)) is not None and not self.named:
             self.named = plain_words(text)
+        if named is None and re.fullmatch(r"[a-z]+", text) and is_adjective(text):
+            return Clause()
         return named
 
     def _in_part(self, text: str) -> None:

@@ -36,6 +36,8 @@ def fits(known: Knowledge, name: str, needs: frozenset[str]) -> bool:
     kinds = {name, *known.same_class(name)[:1], *known.ancestors(name)}
     if any(known.has(name, need[1:]) or need[1:] in kinds for need in needs if need[0] == "!"):
         return False
+    if all(need[0] == "!" for need in needs):
+        return True
     return not needs.isdisjoint(kinds) or any(known.has(name, need) for need in needs) or _is_room(known, name, needs)
 
 

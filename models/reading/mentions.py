@@ -45,12 +45,13 @@ _PRONOUN = re.compile(
     r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
+_OF_THEM = re.compile(r"(two|three|four|five|six|seven|eight|nine|ten|\d{1,2}) of (?:them|these|those)")
 _ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
 _PLACE = re.compile(
     r" (?:,? ?(?:that|which)(?: is| are|'s| was| were| you find| i left| you can find| lies| stands| sits)? "
     r"|lying |standing "
     r"|sitting |hanging |located |found |kept |stored )?"
-    r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|from inside|behind"
+    r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|out in|from inside|behind"
     r"|under|above|for|belonging to|over|in front of|close to) (?=\S)"
 )
 _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides|but(?= the one)) (?=\S)")
@@ -156,6 +157,8 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         return Mention(text, back=True, another=True)
     if text.startswith("everything"):
         text = f"all devices{text.removeprefix('everything')}"
+    if found := _OF_THEM.fullmatch(text):
+        return Mention(text, count=number_in(found[1]), back=True)
     if _PRONOUN.fullmatch(text):
         return Mention(text, count=SEVERAL, back=True)
     if found := _EXCEPT.search(text):

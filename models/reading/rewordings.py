@@ -109,6 +109,8 @@ _AFTER_FIRST = re.compile(
     r"| already)* )?(?P<first>.+?), "
     r"(?:then |only then )?(?P<main>.+)"
 )
+_WITHOUT = re.compile(r"(?:do not|don't|never) (?P<main>(?!use\b|touch\b).+?),? without (?:having |first )?(?P<first>.+)")
+_DONE_TO = re.compile(r"(?P<np>.+?) (?:is|are|has been|have been)(?: all| both| properly| neatly)? (?P<verb>[a-z]+(?:ed|en|t))")
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
@@ -161,6 +163,7 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _THE_FIRST,
         _UNTIL,
         _NOT_UNTIL,
+        _WITHOUT,
         _AFTER_FIRST,
         _BEFORE_FIRST,
         _AFTER,
@@ -176,6 +179,15 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
             yield first, main
             if (done := _HAVING.sub("", first)) != first:
                 yield done, main
+
+
+def done_first(known: Knowledge, text: str) -> str:
+    """Return `fold the blanket` of `the blanket is folded`, which is to be so before something else; "" for others."""
+    found = _DONE_TO.fullmatch(text)
+    if not found or not _is_thing(known, found["np"]):
+        return ""
+    lemmas = [lemma for lemma in verb_lemmas(found["verb"]) if lemma != found["verb"]]
+    return f"{lemmas[0]} {found['np']}" if lemmas else ""
 
 
 def _passive(known: Knowledge, text: str) -> Iterator[Clauses]:
