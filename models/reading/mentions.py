@@ -125,6 +125,7 @@ def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Me
     """
     text = text.strip(" ,")
     text = text.removeprefix("both ") if " and " in text else text
+    text = text.removeprefix("either ") if " or " in text else text
     if len(text.split()) > _LONGEST * 3:
         return ()
     if (whole := mention_of(known, text)) is not None:
@@ -270,7 +271,7 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
 
 
 _PAIR = ("a pair of", "the pair of")
-_PARTS = frozenset({"drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
+_PARTS = frozenset({"inside", "outside", "interior", "top", "surface", "front", "drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
 
 
 def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:

@@ -134,6 +134,13 @@ _PLACE_FIRST = re.compile(
     r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)"
     r"|there should be|you put|put|place) (?P<np>.+)"
 )
+_FROM_FIRST = re.compile(
+    r"(?:from|off|out of) (?P<place>.+?),? (?P<verb>take|get|grab|fetch|bring|pick up|remove|collect) (?P<np>.+)"
+)
+_NONE = re.compile(
+    r"no (?P<np>.+?) (?:should|must|may|can|is to|are to|ought to) (?:be|stay|remain|be left) (?P<state>on|open|running)"
+    r"(?P<rest> in .+)?"
+)
 _SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
     r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into"
@@ -299,6 +306,13 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"{found['clause']} {found['to']} {found['place']} {near} {found['room']}",)
 
 
+def _none_so(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `turn off all lights in the hall` of `no lights should be on in the hall`."""
+    if (found := _NONE.fullmatch(text)) and _is_thing(known, found["np"]):
+        verb = "close" if found["state"] == "open" else "turn off"
+        yield (f"{verb} all {found['np']}{found['rest'] or ''}",)
+
+
 def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
     """Yield `throw the envelope away` of `the envelope I throw away`, and so on."""
     if (found := _FRONTED.fullmatch(text)) and _is_thing(known, found["np"]):
@@ -306,6 +320,8 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
             yield (f"{lemma} {found['np']}{found['rest'] or ''}",)
     if found := _PLACE_FIRST.fullmatch(text):
         yield (f"put {found['np']} {found['place']}",)
+    if (found := _FROM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
+        yield (f"{found['verb']} {found['np']} from {found['place']}",)
     if found := _SITTING.fullmatch(text):
         yield ("sit down", found["clause"])
     if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
@@ -313,7 +329,7 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
+    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object, _none_so,
 )  # fmt: skip
 
 
