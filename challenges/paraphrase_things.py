@@ -47,6 +47,8 @@ def known_nouns(knowledge: Knowledge, names: frozenset[str] = frozenset()) -> Kn
         spaced = name.replace("_", " ")
         one.setdefault(spaced, _own(name, knowledge, names))
         many.setdefault(plural(spaced), _own(name, knowledge, names))
+        if spaced.endswith("s") and not spaced.endswith("ss"):  # `two cards`
+            many.setdefault(spaced, _own(name, knowledge, names))
     for spelling in knowledge.object_spellings:
         found = knowledge.object_class(spelling)
         if found is not None and found.name in knowledge.objects:
@@ -92,6 +94,8 @@ def things(text: str, known: Known, people: int = 1) -> Counted | None:
 
 def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
     each = _EACH.search(text)
+    if each and people < 2:
+        return None  # each of how many is not said
     text = _EACH.sub("", text)
     if (of := _ONE_OF.match(text)) and (name := _meant(text[of.end() :], known.many)):
         return name, 1
@@ -102,6 +106,8 @@ def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
         if name is not None and counted and not _whole(text, known):
             return name, counted
     for words, number in _determined(text):
+        if text == f"a pair of {words}" and (name := _meant(words, known.one)):  # one pair of boots
+            return name, 1
         several = number > 1 or number in (EVERY, UNSAID)
         name = _meant(words, known.one) if number in (1, UNSAID, EVERY) else None
         if name is not None:

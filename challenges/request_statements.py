@@ -75,8 +75,10 @@ class Statements:
         """End a clause: what waits goes where the words before it said."""
         if self.mode in ("hold", "take") and self.waiting:
             self.emit("held", [((HOLDS, self.doer, name), number) for name, number in self.taken()])
+        elif self.mode == "wear" and self.waiting:
+            self.worn(self.taken())
         elif self.mode == "turn_on" and self.waiting:
-            self.switched(self.taken())
+            self.lit_or_worn(self.taken())
         elif self.mode == "turn_off" and self.waiting:
             self.none_on()
         elif self.at is not None and self.waiting and self.mode in ("", "put"):
@@ -100,6 +102,21 @@ class Statements:
         """Say that things are on."""
         self._need_switches(found)
         self.emit("on", [(("ON", name), number) for name, number in found])
+
+    def lit_or_worn(self, found: Counted) -> None:
+        """Say that things are on, or that the agent wears them: `put on a hat`, `put on the lamp`."""
+        is_worn = all(self.knowledge.affords("PutOn", 0, name) for name, _ in found)
+        (self.worn if is_worn else self.switched)(found)
+
+    def worn(self, found: Counted) -> None:
+        """Say that the agent has things on.
+
+        Raises:
+            RefusedError: they are nothing to wear.
+        """
+        if not all(self.knowledge.affords("PutOn", 0, name) for name, _ in found):
+            raise RefusedError
+        self.emit("worn", [(("ON", name, self.doer), number) for name, number in found])
 
     def none_on(self) -> None:
         """Say that none of the waiting things is on.

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
+from hearth.challenges.instruction_object_names import NUMBERS
 from hearth.challenges.paraphrase_things import Known, things
 from hearth.schemas.yaml_limits import packaged
 
@@ -14,6 +15,33 @@ LONGEST_NAME = 7
 """Words of a thing with its number, at most."""
 
 _WORDS = re.compile(r"[a-z0-9'-]+|[,.:;!?]")
+_REASONS = re.compile(r",? so (?:that )?(?:i|we|you|they|he|she) (?:can|could|will|may)(?: [a-z']+){1,3}(?=[.!?;]|$)")
+_PEOPLE = re.compile(
+    r"\b(?:for )?(two|three|four|five|six) (people|guests|persons|of us|visitors|friends)\b"
+    r"(?: (?:are|will|come|want|have)[^.!?;]*)?,?"
+    r"|\bfor (two|three|four|five|six)\b,?"
+)
+_EACH = re.compile(r"\b(?:for )?each(?: of (?:them|us|you))?(?: (?:needs?|gets?|wants?|should have|has))?\b")
+_BOTH = re.compile(r"\bboth (?=(?:the|a|an|my|your|our) [a-z' -]+?(?<!s) and )")
+_ASKING = frozenset(
+    {
+        "put",
+        "take",
+        "hold",
+        "fill",
+        "dress",
+        "wear",
+        "turn_on",
+        "turn_off",
+        "no",
+        "ban",
+        "banned",
+        "open",
+        "shut",
+        "rest",
+        "it",
+    }
+)
 _END = frozenset(".;!?")
 
 
@@ -40,7 +68,38 @@ def _phrases() -> Mapping[str, tuple[str, ...]]:
     return found
 
 
-def tokens(text: str, known: Known) -> Iterator[Token]:
+def for_people(text: str) -> tuple[str, int]:
+    """Return a request without its number of people, and that number, by which things for each of them count.
+
+    Raises:
+        RefusedError: people are named, and not that each of them gets something.
+    """
+    found = _PEOPLE.search(text)
+    if not found:
+        return text, 1
+    if not _EACH.search(text):
+        if found[2]:
+            raise RefusedError
+        return text, 1
+    return _EACH.sub(" ", text.replace(found[0], " ")), NUMBERS.index(found[1] or found[3])
+
+
+def is_aside(sentence: str, known: Known) -> bool:
+    """Return whether a sentence names no thing and has no word that asks for something: `the kids are done playing`."""
+    words = re.findall(r"[a-z0-9'-]+", sentence)
+    grams = [" ".join(words[at : at + n]) for n in (1, 2, 3) for at in range(len(words) - n + 1)]
+    if any(each in known.one or each in known.many for each in grams):
+        return False
+    kinds = {kind for each in grams for kind in _phrases().get(each, ())}
+    return kinds.isdisjoint(_ASKING)
+
+
+def without_reasons(text: str) -> str:
+    """Return a request without the clauses that say what it is good for, as `so I can see` does."""
+    return _BOTH.sub("", _REASONS.sub("", text))
+
+
+def tokens(text: str, known: Known, people: int = 1) -> Iterator[Token]:
     """Yield the kinds of words, the longest phrase or name first; a name with its number before a phrase as long.
 
     Raises:
@@ -51,7 +110,9 @@ def tokens(text: str, known: Known) -> Iterator[Token]:
     while at < len(words):
         for length in range(min(LONGEST_NAME, len(words) - at), 0, -1):
             phrase = " ".join(words[at : at + length])
-            named = things(phrase, known) if not re.search(r"[,.:;!?]|\b(?:and|or|nor|with)\b", phrase) else None
+            named = (
+                things(phrase, known, people) if not re.search(r"[,.:;!?]|\b(?:and|or|nor|with)\b", phrase) else None
+            )
             if named and len(named) == 1 and (length > 1 or phrase not in phrases):
                 yield Token("thing", phrase, (str(named[0][0]), named[0][1]))
                 break

@@ -10,6 +10,7 @@ from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
+from hearth.models.reading.antecedents import DOORS, MANY, Antecedents
 from hearth.models.reading.clause_matches import matches, plain_words, variants
 from hearth.models.reading.kept_states import BACKWARD, BANNED_PLACE, CHANGES, FURTHER, HANDS_OFF, LEFT_ALONE, STAYS
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
@@ -38,34 +39,12 @@ MOST_WORDS = 60
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
-_CLOSE = "Close"
-_CLEANING = frozenset({"Wash", "Wipe", "Scrub", "Rinse"})
-_TOOLS = frozenset({"cleaning_tool", "cleaning_agent", "towel"})
-_ROOM = frozenset({"room"})
-_MANY = frozenset(
-    {
-        "them",
-        "they",
-        "both",
-        "the both",
-        "the two",
-        "them both",
-        "them all",
-        "both of them",
-        "all of them",
-        "these",
-        "those",
-        "all",
-    }
-)
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
-_SPILLED = re.compile(r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$")
+_SPILLED = re.compile(
+    r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$"
+)
 _FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
-_DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
-_HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
-_HAS_LID = ("CAN_OPEN",)
-_OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
 _NEGATION = re.compile(
     r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
@@ -95,6 +74,7 @@ class ClauseReader:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.known = scene, scene.known
+        self.antecedents = Antecedents(scene)
         self.missing: dict[str, None] = {}
 
     def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True, depth: int = 0) -> Clause | None:
@@ -241,7 +221,9 @@ class ClauseReader:
                 first = next((act.action for act in way if name in act.slots), "")
                 things[name] = self._things(slots[name], needs, first, spoken)
             for name, needs in request.it.items():
-                things[name] = self._referred(needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place)))
+                things[name] = self.antecedents.referred(
+                    needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place))
+                )
             if not all(things.values()):
                 return None
             made = self._made(way, things, count, text)
@@ -264,14 +246,16 @@ class ClauseReader:
         found: list[ObjectRef] = []
         for mention in mentions_in(self.known, text):
             if mention.another:
-                refs = self._another(needs, spoken)
+                refs = self.antecedents.another(needs, spoken)
             elif mention.back:
-                refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
-                if mention.count > 0 and refs:
-                    refs = refs[: mention.count] if len(refs) >= mention.count else self._by_class((refs[0].name,), mention.count)
-            elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
+                refs = self.antecedents.referred(needs, action, spoken, is_many=mention.words in MANY)
+                if 0 < mention.count <= len(refs):
+                    refs = refs[: mention.count]
+                elif mention.count > 0 and refs:
+                    refs = self._by_class((refs[0].name,), mention.count)
+            elif mention.words in DOORS and (own := self.antecedents.opened(spoken, mention.words)):
                 refs = own
-            elif own := self._meant_before(mention, spoken):
+            elif own := self.antecedents.meant_before(mention, spoken):
                 refs = own if all(fits(self.known, ref.name, needs) for ref in own) else ()
             else:
                 refs = self.scene.things(mention, needs, action)
@@ -281,46 +265,6 @@ class ClauseReader:
                 return ()
             found += [ref for ref in refs if ref not in found]
         return tuple(found)
-
-    def _another(self, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
-        groups = [each.refs for each in spoken if not each.is_place]
-        refs = next((each for each in groups if all(fits(self.known, ref.name, needs) for ref in each)), ())
-        taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
-        return self.scene.others(refs, taken) if refs else ()
-
-    def _meant_before(self, mention: Mention, spoken: Sequence[Spoken]) -> Refs:
-        """Return the thing of a class of several that was spoken of before: `the pan` is the frying pan."""
-        is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
-        if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
-            return ()
-        first, stand_ins = mention.classes[0], self.known.stand_ins(mention.classes[0])
-        own = [name for name in mention.classes if not (name in stand_ins and self.scene.has(first))]
-        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in own), ())
-
-    def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
-        """Return the furniture that was spoken of last, where it has a door of its own."""
-        if words.startswith("its "):
-            return next((each.refs for each in spoken if self.known.has(each.refs[0].name, "CAN_OPEN")), ())
-        is_furniture = spoken and (spoken[0].is_place or spoken[0].action == "Open" or words == "the lid")
-        last = spoken[0].refs if is_furniture else ()
-        needs = _HAS_LID if words == "the lid" else _HAS_DOOR
-        return last if all(self.known.has(ref.name, need) for ref in last for need in needs) else ()
-
-    def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
-        """Return the things of words before that `it` or `them` stands for."""
-        groups = list(spoken[:1] if needs == _ROOM else spoken)
-        if action in _CLEANING:
-            groups.sort(key=lambda each: each.action == "Grab" and self._is_tool(each))
-        if action == _CLOSE:
-            groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
-        elif needs.isdisjoint(_OPENS):
-            groups.sort(key=lambda each: each.is_place)
-        if is_many:
-            groups.sort(key=lambda each: len(each.refs) < 2)
-        return next((each.refs for each in groups if all(fits(self.known, ref.name, needs) for ref in each.refs)), ())
-
-    def _is_tool(self, spoken: Spoken) -> bool:
-        return all(fits(self.known, ref.name, _TOOLS) for ref in spoken.refs)
 
     def _made(
         self, way: Sequence[ActTemplate], things: Mapping[str, Refs], count: int, text: str

@@ -10,10 +10,11 @@ from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
+from hearth.models.reading.hinted_requests import hinted_request
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
-from hearth.models.reading.request_table import hints, words
+from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import done_first, orders
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
@@ -36,7 +37,8 @@ SUMMED_UP = 3
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
 _PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?(?:afterwards|after that),? |;? and also |,? and |,? but |,? plus "
+    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?(?:afterwards|after that),? "
+    r"|;? and also |,? and |,? but |,? plus "
     r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
     r"|can|could|would|make|let's|lock"
     r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
@@ -130,18 +132,11 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
-    elif is_idle and not wish and (hint := _hinted(whole)):
+    elif is_idle and not wish and (hint := hinted_request(whole)):
         reader.sentence(hint)  # `I'm thirsty`
     left = len(text[LONGEST:].split())
     reading = reader.reading()
     return reading._replace(unread=(*reading.unread, f"{left:,} more words")) if left else reading
-
-
-def _hinted(text: str) -> str:
-    """Return the request that a text hints at; "" where it hints at none."""
-    plain = " ".join(text.lower().replace("\u2019", "'").split()).strip(" .!?")
-    found = ((pattern.fullmatch(plain), request) for pattern, request in hints())
-    return next((match.expand(request) for match, request in found if match), "")
 
 
 class _Text:

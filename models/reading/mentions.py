@@ -154,12 +154,10 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     text = _RELATIVE.sub("", text.strip(" ,"))
     if not text or len(text.split()) > _LONGEST * 2:
         return None
-    if _ANOTHER.fullmatch(text):
-        return Mention(text, back=True, another=True)
+    if (back := _referring(text)) is not None:
+        return back
     if text.startswith("everything"):
         text = f"all devices{text.removeprefix('everything')}"
-    if found := _OF_THEM.fullmatch(text):
-        return Mention(text, count=number_in(found[1]), back=True)
     if _PRONOUN.fullmatch(text):
         return Mention(text, count=SEVERAL, back=True)
     if found := _EXCEPT.search(text):
@@ -183,6 +181,14 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
         return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
     return _in_room(known, text, rest, count) or _part(known, text, rest, count) or _plain(known, text)
+
+
+def _referring(text: str) -> Mention | None:
+    """Return the things of words before that words with a number, or for another of them, stand for."""
+    if _ANOTHER.fullmatch(text):
+        return Mention(text, back=True, another=True)
+    found = _OF_THEM.fullmatch(text)
+    return Mention(text, count=number_in(found[1]), back=True) if found else None
 
 
 def _counted(text: str) -> tuple[str, int | None]:
@@ -271,7 +277,25 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
 
 
 _PAIR = ("a pair of", "the pair of")
-_PARTS = frozenset({"inside", "outside", "interior", "top", "surface", "front", "drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
+_PARTS = frozenset(
+    {
+        "inside",
+        "outside",
+        "interior",
+        "top",
+        "surface",
+        "front",
+        "drawer",
+        "drawers",
+        "door",
+        "doors",
+        "lid",
+        "plug",
+        "switch",
+        "screen",
+        "knob",
+    }
+)
 
 
 def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:

@@ -109,8 +109,12 @@ _AFTER_FIRST = re.compile(
     r"| already)* )?(?P<first>.+?), "
     r"(?:then |only then )?(?P<main>.+)"
 )
-_WITHOUT = re.compile(r"(?:do not|don't|never) (?P<main>(?!use\b|touch\b).+?),? without (?:having |first )?(?P<first>.+)")
-_DONE_TO = re.compile(r"(?P<np>.+?) (?:is|are|has been|have been)(?: all| both| properly| neatly)? (?P<verb>[a-z]+(?:ed|en|t))")
+_WITHOUT = re.compile(
+    r"(?:do not|don't|never) (?P<main>(?!use\b|touch\b).+?),? without (?:having |first )?(?P<first>.+)"
+)
+_DONE_TO = re.compile(
+    r"(?P<np>.+?) (?:is|are|has been|have been)(?: all| both| properly| neatly)? (?P<verb>[a-z]+(?:ed|en|t))"
+)
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
@@ -138,8 +142,8 @@ _FROM_FIRST = re.compile(
     r"(?:from|off|out of) (?P<place>.+?),? (?P<verb>take|get|grab|fetch|bring|pick up|remove|collect) (?P<np>.+)"
 )
 _NONE = re.compile(
-    r"no (?P<np>.+?) (?:should|must|may|can|is to|are to|ought to) (?:be|stay|remain|be left) (?P<state>on|open|running)"
-    r"(?P<rest> in .+)?"
+    r"no (?P<np>.+?) (?:should|must|may|can|is to|are to|ought to) (?:be|stay|remain|be left) "
+    r"(?P<state>on|open|running)(?P<rest> in .+)?"
 )
 _SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
