@@ -39,6 +39,7 @@ MOST_WORDS = 60
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
+_SUBJECT = re.compile(r"(.+?) (?:is|are|was|were|has|have|needs?) .+")
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _SPILLED = re.compile(
     r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$"
@@ -179,7 +180,10 @@ class ClauseReader:
         if spilled := _SPILLED.match(text):
             return self.named(spilled[1]) or Clause()
         text = _THERE_IS.sub(r"\2 \1", text)
+        if (subject := _SUBJECT.match(text)) and (named := self.named(subject[1])):
+            found += named.spoken
         for name in things_in(self.known, text):
+            self.scene.speak_of_rooms((name,))
             if refs := self.scene.some((name,), 1):
                 found.append(Spoken(refs, "", bool(found)))
         return Clause(spoken=tuple(found))
@@ -221,6 +225,7 @@ class ClauseReader:
                 first = next((act.action for act in way if name in act.slots), "")
                 things[name] = self._things(slots[name], needs, first, spoken)
             for name, needs in request.it.items():
+                spoken = [each for each in spoken if each.refs not in things.values()]
                 things[name] = self.antecedents.referred(
                     needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place))
                 )

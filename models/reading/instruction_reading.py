@@ -19,6 +19,7 @@ from hearth.models.reading.rewordings import done_first, orders
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
+from hearth.models.reading.statements import is_statement
 from hearth.models.reading.telegrams import is_unused, names_furniture, request_of
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
@@ -94,6 +95,9 @@ _VERB = re.compile(r"((?:pick up|put down|take out|take off|(?:turn|switch) (?:o
 _SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
 
+_NOT_WITHOUT = re.compile(r"(?:do not|don't|never) .+ (?:without|until|before) ")
+
+
 class Reading(NamedTuple):
     """The acts that a text asks for in a home.
 
@@ -132,7 +136,9 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
-    elif is_idle and not wish and (hint := hinted_request(whole)):
+    is_nothing = not any(clause.acts or clause.forbidden for clause in reader.found)
+    if is_nothing and not wish and (hint := hinted_request(whole)):
+        reader = _Text(ClauseReader(Scene(known, world)), is_long=False)
         reader.sentence(hint)  # `I'm thirsty`
     left = len(text[LONGEST:].split())
     reading = reader.reading()
@@ -306,8 +312,15 @@ class _Text:
         if verb and not text.startswith(verb) and not is_aside(text):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
         if read is None and is_single:
-            read = self._stated(text, spoken)
+            read = self._ordered(text, spoken) or self._stated(text, spoken)
         return read
+
+    def _ordered(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
+        """Return a part of a sentence that says an order, as `don't go out without a hat` does, as one clause."""
+        if not _NOT_WITHOUT.match(text):
+            return None
+        found = self._in_order(text, spoken)
+        return Clause(tuple(act for each in found for act in each.acts), spoken=_all_spoken(found)) if found else None
 
     def _stated(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
@@ -391,7 +404,10 @@ def is_aside(text: str) -> bool:
         return False
     if text in TAKEN_BACK:
         return False
-    return any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain_words(text))) if each)
+    plain = plain_words(text)
+    if any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain)) if each):
+        return True
+    return any(is_statement(each) for each in dict.fromkeys((text, plain)) if each)
 
 
 def _verb_of(text: str) -> str:

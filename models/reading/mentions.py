@@ -45,6 +45,7 @@ _PRONOUN = re.compile(
     r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
+_PAIRS = re.compile(r"\b(two|three|four|five|\d{1,2}|both) pairs of ")
 _OF_THEM = re.compile(r"(two|three|four|five|six|seven|eight|nine|ten|\d{1,2}) of (?:them|these|those)")
 _ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
 _PLACE = re.compile(
@@ -151,7 +152,7 @@ def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Me
 @lru_cache(maxsize=65_536)
 def mention_of(known: Knowledge, text: str) -> Mention | None:
     """Return the things of one noun phrase; None where it is not understood."""
-    text = _RELATIVE.sub("", text.strip(" ,"))
+    text = _PAIRS.sub(r"\1 ", _RELATIVE.sub("", text.strip(" ,")))
     if not text or len(text.split()) > _LONGEST * 2:
         return None
     if (back := _referring(text)) is not None:

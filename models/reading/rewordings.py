@@ -145,6 +145,11 @@ _NONE = re.compile(
     r"no (?P<np>.+?) (?:should|must|may|can|is to|are to|ought to) (?:be|stay|remain|be left) "
     r"(?P<state>on|open|running)(?P<rest> in .+)?"
 )
+_GO_IN = re.compile(r"(?P<to>in|into|on|onto) (?P<place>.+?) (?:go|goes|with) (?P<np>.+)")
+_TO_DO = re.compile(r"(?P<np>.+?) to (?P<verb>wash|clean|fold|put away|tidy|rinse|cut|chop|eat|read|dry|cook)")
+_FORGOTTEN = re.compile(
+    r"(?:you|we|i|somebody|someone)(?: have|'ve)? (?:forgot|forgotten|still have|still need) to (?P<clause>.+)"
+)
 _SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
     r"(?:could|can|should|may|might|would) (?P<np>.+?) (?:go|live|stand|sit)(?P<rest> (?:in|on|into"
@@ -326,6 +331,12 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
         yield (f"put {found['np']} {found['place']}",)
     if (found := _FROM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
         yield (f"{found['verb']} {found['np']} from {found['place']}",)
+    if (found := _GO_IN.fullmatch(text)) and _is_thing(known, found["place"]):
+        yield (f"put {found['np']} {found['to']} {found['place']}",)
+    if (found := _TO_DO.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"{found['verb']} {found['np']}",)
+    if found := _FORGOTTEN.fullmatch(text):
+        yield (found["clause"],)
     if found := _SITTING.fullmatch(text):
         yield ("sit down", found["clause"])
     if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
