@@ -39,8 +39,9 @@ _DONE_WITH = re.compile(
     r"(?:done|finished|through) with [a-z ]+?),? ((?:it|they|put|that|this|place|take|bring|wash|throw)\b.+)$"
 )
 _MAY_I = re.compile(
-    r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try|word)\b)"
+    r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try|word)\b|.+ (?:on|in) )"
 )
+_FOR_ME = re.compile(r"^((?:please )?(?:put|set|lay|stick|leave|place)) me ")
 _COUNTED = re.compile(r"^(.+?),? (?:please,? )?(two|three|four|five|six|both|all)(?: of (?:them|those)| pairs)(, .+)?$")
 _BODY = re.compile(r"\b(your|my) (face|hands?|hair|feet|body)\b(.+?)\b(dry|pat|rub)( off)? (?:it|them)\b")
 _SPOT = re.compile(
@@ -55,7 +56,7 @@ _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 def marked(text: str) -> str:
     """Return a sentence in small letters with the comma behind its first clause, where it is certain."""
     text = _OFF.sub(r"\1off", _THERE_NEEDS.sub(r"\1 \2 ", text))
-    text = _DONE_WITH.sub(r"\1, \2", _MAY_I.sub("bring me ", text))
+    text = _DONE_WITH.sub(r"\1, \2", _FOR_ME.sub(r"\1 ", _MAY_I.sub("bring me ", text)))
     if found := _COUNTED.match(text):
         text = f"{_with_number(found[1], found[2])}{found[3] or ''}"
     text = _SPOT.sub(r"\1 ", _BODY.sub(r"\1 \2\3\4\5 \1 \2", text))

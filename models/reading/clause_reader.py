@@ -39,6 +39,7 @@ MOST_WORDS = 60
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
+_JOINED = re.compile(r" (?:and|or|nor) ")
 _SUBJECT = re.compile(r"(.+?) (?:is|are|was|were|has|have|needs?) .+")
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _SPILLED = re.compile(
@@ -71,12 +72,14 @@ class ClauseReader:
 
     Attributes:
         missing: what the home lacks of the things that were named.
+        placed: the places on which things were put so far.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.known = scene, scene.known
         self.antecedents = Antecedents(scene)
         self.missing: dict[str, None] = {}
+        self.placed: dict[ObjectRef, Refs] = {}
 
     def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True, depth: int = 0) -> Clause | None:
         """Return what a clause asks for; None where it is not understood.
@@ -185,7 +188,10 @@ class ClauseReader:
         for name in things_in(self.known, text):
             self.scene.speak_of_rooms((name,))
             if refs := self.scene.some((name,), 1):
-                found.append(Spoken(refs, "", bool(found)))
+                found.append(Spoken(refs, "", bool(found) and not _JOINED.search(text)))
+        things = [each for each in found if not each.is_place and len(each.refs) == 1]
+        if len(things) > 1 and _JOINED.search(text):
+            found.append(Spoken(tuple(dict.fromkeys(ref for each in things for ref in each.refs)), ""))  # `them both`
         return Clause(spoken=tuple(found))
 
     def named(self, text: str) -> Clause | None:
@@ -322,7 +328,7 @@ class ClauseReader:
                     action, place = usual_place(self.scene, objects[0])
                     yield Act(action, (objects[0], *place), text)
                 elif act.action == PUT_NEAR:
-                    place = self.scene.support(objects[1])
+                    place = self.placed.get(objects[1], ()) or self.scene.support(objects[1])
                     if place:
                         yield Act("PutBack", (objects[0], *place), text)
                     else:
@@ -333,6 +339,8 @@ class ClauseReader:
                 elif act.action == PUT_TO:
                     yield Act(usual_way(self.known, *objects), objects, text)
                 else:
+                    if act.action == "PutBack" and len(objects) > 1:
+                        self.placed[objects[0]] = objects[1:]
                     yield Act(self._fitting(act.action, objects), objects, text, act.optional)
 
     def _fitting(self, action: str, objects: Refs) -> str:

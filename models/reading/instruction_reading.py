@@ -95,6 +95,9 @@ _VERB = re.compile(r"((?:pick up|put down|take out|take off|(?:turn|switch) (?:o
 _SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
 
+_MY_PLAN = re.compile(
+    r"(?:i|we)(?:'ll| will| am going to| are going to|'m going to|'re going to|'m about to|'re about to) "
+)
 _NOT_WITHOUT = re.compile(r"(?:do not|don't|never) .+ (?:without|until|before) ")
 
 
@@ -301,7 +304,7 @@ class _Text:
         is_single = _PARTS.search(text) is None
         is_statement = (
             _OBSERVED.match(text)
-            or (not is_all and not self.is_long and _PERFECT.match(text))
+            or (not is_all and not self.is_long and (_PERFECT.match(text) or _MY_PLAN.match(text)))
             or (not is_all and _SITUATION.match(text) and is_aside(text))
         )
         if is_single and is_statement:

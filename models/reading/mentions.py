@@ -64,6 +64,7 @@ _RELATIVE = re.compile(
     r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house"
     r"|home|flat))$"
 )
+_OWN_PART = re.compile(r"(.+)'s ([a-z]+)")
 _PART_OF = re.compile(r"(.+?) of (?:the|my|your|our|this|that) (.+)")
 _EMPTY_WORDS = (
     "dirty",
@@ -177,6 +178,8 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         if count == 1 and text.startswith(_PAIR) and not known.has(classes[0], "CLOTHES"):
             count = 2
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
+    if (own := _OWN_PART.fullmatch(text)) and own[2] in _PARTS:
+        return mention_of(known, own[1])
     if (part := _PART_OF.fullmatch(rest)) and part[1].rpartition(" ")[2] in _PARTS:
         return mention_of(known, part[2])
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):

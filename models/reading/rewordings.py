@@ -49,7 +49,9 @@ _CAUSED = re.compile(
     r"^(?:have|get|see|want|need|i want|i need|i would like|i would love|see that|make sure|let|keep|leave) "
 )
 _UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
-_GIVEN = re.compile(r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)")
+_GIVEN = re.compile(
+    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)(?: first| too| then| now| as well)?"
+)
 _NEEDS_ONE = re.compile(
     r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "
     r"(?:[a-z]+ ){0,3}(?P<verb>[a-z]+)"
@@ -57,7 +59,7 @@ _NEEDS_ONE = re.compile(
 _LIGHT = re.compile(
     r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little "
     r"|long |short "
-    r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
+    r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> (?!and )(?:(?! and ).)+)?"
 )
 _SPENT = re.compile(
     r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>(?!evening|morning)[a-z]+ing)\b(?P<rest> .+)?"
@@ -72,7 +74,7 @@ _SPENT_IN = re.compile(
 )
 _TOOL_FIRST = re.compile(
     r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))?"
-    r" (?P<clause>[a-z]+(?: .+)?)"
+    r" (?P<clause>(?!and\b|but\b|then\b)[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
@@ -192,6 +194,8 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
     ):
         if found := pattern.fullmatch(text):
             first, main = (found[part].strip(" ,") for part in ("first", "main"))
+            if pattern is _WITHOUT:
+                yield f"put on {first}", main  # `don't go out without a hat`
             yield first, main
             if (done := _HAVING.sub("", first)) != first:
                 yield done, main

@@ -22,14 +22,14 @@ _TELLS = re.compile(
 )
 _ASKS_WHAT = re.compile(
     r"(?:who|what|when|where|why|how|which|whose|is|are|was|were|do|does|did|has|hasn't|isn't|aren't|haven't)"
-    r"(?:'s|'re|'ll|'ve)?\b(?! about ).*"
+    r"(?:'s|'re|'ll|'ve)?\b(?! about ).*|have (?:you|we|they|i)\b.*"
 )
 _EXCLAIMS = re.compile(
     r"(?:ugh|oh(?: no| dear| my)?|ah|phew|wow|hmm+|gosh|damn|blimey|crikey|oops|whoa|yay|ouch|brr+|yuck|eww?|argh|ahem"
     r"|daddy|dad|mum|mummy|mom|mommy|grandma|grandpa|love|darling|honey|sweetie|mate|buddy|guys|kids|everyone|folks|sir"
     r"|madam|son|there(?: we go| you go)?|right then|come on|what a [a-z]+(?: [a-z]+)*|now|anything|whatever|go|hurry|hurry up"
     r"|(?:can't|cannot|couldn't) (?:see|hear|find|sleep|breathe|feel|think|concentrate|wait|move|read)(?: .+)?"
-    r"|that's enough(?: .+)?|enough of .+|time for .+|no more .+|almost .+|nearly .+)"
+    r"|that's enough(?: .+)?|enough of .+|time for .+|go on|go back|give it (?:a|one|two|five|ten|some) (?:minutes?|while|seconds?|time)|almost .+|nearly .+)"
 )
 _WANTS = re.compile(
     r"\b(?:should|shouldn't|must|mustn't|shall|ought|want|wants|need|needs|needn't|wish|would like|would love|'d like|'d love|let's"
@@ -39,6 +39,7 @@ _WANTS = re.compile(
 _IS_SO = re.compile(
     r"(?:[a-z]+ ){0,2}[a-z]+'s (?:(?:[a-z]+ly|so|too|very|really|all|still|not|getting|been) )*(?P<how>[a-z]+)"
 )
+_ALLOWS = re.compile(r"you (?:can|may|could)(?: now| then)? [a-z]+")
 _FINITE = re.compile(
     r"(?:the|my|our|your|his|her|its|their|that|this) (?P<noun>[a-z'-]+)(?: [a-z'-]+)? (?P<verb>[a-z]+s)\b(?! (?:on|in|to)\b).*"
 )
@@ -50,6 +51,8 @@ def is_statement(text: str) -> bool:
 
     A clause with a word of wishes or duties, as `should` and `belongs` are, is none.
     """
+    if _ALLOWS.match(text):
+        return False
     if _EXCLAIMS.fullmatch(text):
         return True
     if _WANTS.search(text):
