@@ -39,7 +39,8 @@ _DONE_WITH = re.compile(
     r"(?:done|finished|through) with [a-z ]+?),? ((?:it|they|put|that|this|place|take|bring|wash|throw)\b.+)$"
 )
 _MAY_I = re.compile(
-    r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try|word)\b|.+ (?:on|in) )"
+    r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try"
+    r"|word)\b|.+ (?:on|in) )"
 )
 _FOR_ME = re.compile(r"^((?:please )?(?:put|set|lay|stick|leave|place)) me ")
 _COUNTED = re.compile(r"^(.+?),? (?:please,? )?(two|three|four|five|six|both|all)(?: of (?:them|those)| pairs)(, .+)?$")

@@ -9,17 +9,16 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_matches import plain_words
-from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
+from hearth.models.reading.clause_reader import MOST_WORDS, ClauseReader, unknown_ban
 from hearth.models.reading.hinted_requests import hinted_request
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
-from hearth.models.reading.request_table import words
 from hearth.models.reading.rewordings import done_first, orders
+from hearth.models.reading.sentence_parts import BAN, PARTS, STATEMENT, is_aside, main_clause
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
-from hearth.models.reading.statements import is_statement
 from hearth.models.reading.telegrams import is_unused, names_furniture, request_of
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
@@ -37,14 +36,6 @@ SUMMED_UP = 3
 """Sentences from which the first may sum up the others."""
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
-_PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?(?:afterwards|after that),? "
-    r"|;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
-    r"|can|could|would|make|let's|lock"
-    r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
-    r"|[;,:] (?:and )?| - | – | — |\. )"
-)
 _ALTERNATIVE = re.compile(
     r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise"
     r"|say|preferably|ideally"
@@ -79,18 +70,9 @@ _OWN_WISH = re.compile(r"(?:i|we)(?: would|'d|'ll| will)? (?:want|need|like|love
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
-_STATEMENT = re.compile(
-    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|wish|expect|ask)(?: for)?(?: you)? to "
-)
 _OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
 _SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
 """The beginning of a sentence that may ask for something where it stands alone, as `it is dark in here` does."""
-
-_WISH = re.compile(
-    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
-    r"|know|hear|listen|be|cook|feel"
-    r"|write|sit|lie|play|enjoy|study)\b"
-)
 _VERB = re.compile(r"((?:pick up|put down|take out|take off|(?:turn|switch) (?:on|off)|turn|switch|[a-z]+)) ")
 _SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
@@ -134,7 +116,7 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         if plain:
             reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
     is_idle = not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found)
-    wish = _STATEMENT.match(whole.lower().strip())
+    wish = STATEMENT.match(whole.lower().strip())
     if is_idle and wish:
         reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
@@ -173,7 +155,7 @@ class _Text:
             self.first = len(self.found)
 
     def _sentence(self, text: str) -> None:
-        is_one = _PARTS.search(text) is None
+        is_one = PARTS.search(text) is None
         if is_one and len(text.split()) > MOST_WORDS:
             self.unread.append(text)
             return
@@ -197,7 +179,7 @@ class _Text:
     def _whole(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         if _OBSERVED.match(text):
             return None
-        found = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
+        found = self.clauses.read(text, spoken, steps=PARTS.search(text) is None)
         return (found,) if found else None
 
     def _in_order(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
@@ -248,7 +230,7 @@ class _Text:
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""
-        parts = _main(text)
+        parts = main_clause(text)
         if not parts:
             return None
         stated = self.clauses.stated(parts[0])
@@ -276,7 +258,7 @@ class _Text:
 
     def _read(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a text; None where a part of it is not understood."""
-        pieces = _PARTS.split(text)
+        pieces = PARTS.split(text)
         return self._joined(pieces[::2], pieces[1::2], spoken, "") if len(pieces) < 2 * MOST_PARTS else None
 
     def _joined(
@@ -301,7 +283,7 @@ class _Text:
 
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
-        is_single = _PARTS.search(text) is None
+        is_single = PARTS.search(text) is None
         is_statement = (
             _OBSERVED.match(text)
             or (not is_all and not self.is_long and (_PERFECT.match(text) or _MY_PLAN.match(text)))
@@ -339,7 +321,7 @@ class _Text:
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
-        pieces = _PARTS.split(text)
+        pieces = PARTS.split(text)
         parts, joints = pieces[::2], pieces[1::2]
         at, verb = 0, ""
         while at < len(parts):
@@ -381,36 +363,6 @@ def _glued(parts: Sequence[str], joints: Sequence[str]) -> str:
 
 def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
-
-
-_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
-_SUBORDINATE = re.compile(
-    r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
-    r"|for|at|in|from|on|with|by|over|under|inside) "
-    r"(.+?), (.+)"
-)
-
-
-def _main(text: str) -> tuple[str, str] | None:
-    """Return the clause of a sentence that says when or why, and the rest behind its comma; None without one."""
-    found = _SUBORDINATE.fullmatch(text) or _REASON.fullmatch(text)
-    return (found[1], found[2]) if found else None
-
-
-BAN = re.compile(r"(?:do not|don't|never|without|not|no need to) ")
-"""The beginning of an aside that says what is not to be done."""
-
-
-def is_aside(text: str) -> bool:
-    """Return whether a clause asks for nothing."""
-    if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
-        return False
-    if text in TAKEN_BACK:
-        return False
-    plain = plain_words(text)
-    if any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain)) if each):
-        return True
-    return any(is_statement(each) for each in dict.fromkeys((text, plain)) if each)
 
 
 def _verb_of(text: str) -> str:

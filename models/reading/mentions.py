@@ -178,13 +178,19 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         if count == 1 and text.startswith(_PAIR) and not known.has(classes[0], "CLOTHES"):
             count = 2
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
-    if (own := _OWN_PART.fullmatch(text)) and own[2] in _PARTS:
-        return mention_of(known, own[1])
-    if (part := _PART_OF.fullmatch(rest)) and part[1].rpartition(" ")[2] in _PARTS:
-        return mention_of(known, part[2])
+    if (whole := _whole_of(text, rest)) is not None:
+        return mention_of(known, whole)
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
         return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
     return _in_room(known, text, rest, count) or _part(known, text, rest, count) or _plain(known, text)
+
+
+def _whole_of(text: str, rest: str) -> str | None:
+    """Return the furniture of which words name a part: `the lid of the toilet`, `the toilet's lid`."""
+    if (own := _OWN_PART.fullmatch(text)) and own[2] in _PARTS:
+        return own[1]
+    part = _PART_OF.fullmatch(rest)
+    return part[2] if part and part[1].rpartition(" ")[2] in _PARTS else None
 
 
 def _referring(text: str) -> Mention | None:

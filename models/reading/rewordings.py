@@ -50,7 +50,8 @@ _CAUSED = re.compile(
 )
 _UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
 _GIVEN = re.compile(
-    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)(?: first| too| then| now| as well)?"
+    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)(?: first| too| then"
+    r"| now| as well)?"
 )
 _NEEDS_ONE = re.compile(
     r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "

@@ -11,7 +11,8 @@ from hearth.kb.language.word_tables import lemmas
 _SUBJECT = (
     r"(?:the|my|our|your|his|her|its|their|that|this|these|those|a|an|some|all|both|no one|nobody|somebody|someone"
     r"|everybody|everyone|there|here|i|we|you|he|she|it|they|one|two|three|four|five|six|most|many|grandma|grandpa|mum"
-    r"|mom|dad|daddy|mummy|[a-z]+(?= (?:and )?(?:[a-z]+ )?(?:is|are|was|were|has|have|stinks|smells|hurts|looks|seems|isn't|aren't)\b))"
+    r"|mom|dad|daddy|mummy|[a-z]+(?= (?:and )?(?:[a-z]+ )?(?:is|are|was|were|has|have|stinks|smells|hurts"
+    r"|looks|seems|isn't|aren't)\b))"
 )
 _AUXILIARY = (
     r"(?:is|are|was|were|am|isn't|aren't|wasn't|weren't|has|have|had|hasn't|haven't|will|won't|would|could|may"
@@ -27,12 +28,15 @@ _ASKS_WHAT = re.compile(
 _EXCLAIMS = re.compile(
     r"(?:ugh|oh(?: no| dear| my)?|ah|phew|wow|hmm+|gosh|damn|blimey|crikey|oops|whoa|yay|ouch|brr+|yuck|eww?|argh|ahem"
     r"|daddy|dad|mum|mummy|mom|mommy|grandma|grandpa|love|darling|honey|sweetie|mate|buddy|guys|kids|everyone|folks|sir"
-    r"|madam|son|there(?: we go| you go)?|right then|come on|what a [a-z]+(?: [a-z]+)*|now|anything|whatever|go|hurry|hurry up"
+    r"|madam|son|there(?: we go| you go)?|right then|come on|what a [a-z]+(?: [a-z]+)*|now|anything"
+    r"|whatever|go|hurry|hurry up"
     r"|(?:can't|cannot|couldn't) (?:see|hear|find|sleep|breathe|feel|think|concentrate|wait|move|read)(?: .+)?"
-    r"|that's enough(?: .+)?|enough of .+|time for .+|go on|go back|give it (?:a|one|two|five|ten|some) (?:minutes?|while|seconds?|time)|almost .+|nearly .+)"
+    r"|that's enough(?: .+)?|enough of .+|time for .+|go on|go back|give it (?:a|one|two|five|ten"
+    r"|some) (?:minutes?|while|seconds?|time)|almost .+|nearly .+)"
 )
 _WANTS = re.compile(
-    r"\b(?:should|shouldn't|must|mustn't|shall|ought|want|wants|need|needs|needn't|wish|would like|would love|'d like|'d love|let's"
+    r"\b(?:should|shouldn't|must|mustn't|shall|ought|want|wants|need|needs|needn't|wish|would like"
+    r"|would love|'d like|'d love|let's"
     r"|has to|have to|had to|had better|please|could you|would you|can you|will you|belongs?|goes|go|never|not allowed"
     r"|stays?|remains?|forbidden|may not|going to need|gets?|better|allowed)\b"
 )
@@ -41,7 +45,8 @@ _IS_SO = re.compile(
 )
 _ALLOWS = re.compile(r"you (?:can|may|could)(?: now| then)? [a-z]+")
 _FINITE = re.compile(
-    r"(?:the|my|our|your|his|her|its|their|that|this) (?P<noun>[a-z'-]+)(?: [a-z'-]+)? (?P<verb>[a-z]+s)\b(?! (?:on|in|to)\b).*"
+    r"(?:the|my|our|your|his|her|its|their|that"
+    r"|this) (?P<noun>[a-z'-]+)(?: [a-z'-]+)? (?P<verb>[a-z]+s)\b(?! (?:on|in|to)\b).*"
 )
 
 
@@ -59,7 +64,13 @@ def is_statement(text: str) -> bool:
         return False
     if _ASKS_WHAT.fullmatch(text) or _TELLS.fullmatch(text):
         return True
-    if (found := _IS_SO.fullmatch(text)) and {"ADJ", "VERB"} & set(lemmas(found["how"])):
+    said = _IS_SO.fullmatch(text)
+    if said and {"ADJ", "VERB"} & set(lemmas(said["how"])):
         return True
     found = _FINITE.fullmatch(text)
-    return bool(found) and is_verb(found["verb"]) and found["verb"] not in verb_lemmas(found["verb"])
+    return bool(found) and _is_finite(found["verb"] if found else "")
+
+
+def _is_finite(word: str) -> bool:
+    """Return whether a word is a verb with an ending, as `hurts` is."""
+    return is_verb(word) and word not in verb_lemmas(word)
