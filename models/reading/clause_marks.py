@@ -44,6 +44,7 @@ _MAY_I = re.compile(
 )
 _FOR_ME = re.compile(r"^((?:please )?(?:put|set|lay|stick|leave|place)) me ")
 _COUNTED = re.compile(r"^(.+?),? (?:please,? )?(two|three|four|five|six|both|all)(?: of (?:them|those)| pairs)(, .+)?$")
+_ELLIPTICAL = re.compile(r"^(need|want|fancy) (?=my |the |a |an |some )")
 _BODY = re.compile(r"\b(your|my) (face|hands?|hair|feet|body)\b(.+?)\b(dry|pat|rub)( off)? (?:it|them)\b")
 _SPOT = re.compile(
     r"\b(in|on|at|into|onto|to) the (?:very |right in the )?(?:middle|center|centre|edge|corner|end|foot|head|side"
@@ -57,6 +58,7 @@ _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 def marked(text: str) -> str:
     """Return a sentence in small letters with the comma behind its first clause, where it is certain."""
     text = _OFF.sub(r"\1off", _THERE_NEEDS.sub(r"\1 \2 ", text))
+    text = _ELLIPTICAL.sub(r"i \1 ", text)
     text = _DONE_WITH.sub(r"\1, \2", _FOR_ME.sub(r"\1 ", _MAY_I.sub("bring me ", text)))
     if found := _COUNTED.match(text):
         text = f"{_with_number(found[1], found[2])}{found[3] or ''}"

@@ -39,6 +39,7 @@ MOST_WORDS = 60
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
+_IS = re.compile(r"'s (?=(?:[a-z]+ ?){1,3}$)")
 _JOINED = re.compile(r" (?:and|or|nor) ")
 _SUBJECT = re.compile(r"(.+?) (?:is|are|was|were|has|have|needs?) .+")
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
@@ -48,7 +49,7 @@ _SPILLED = re.compile(
 _FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _NEGATION = re.compile(
-    r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
+    r"(?:no(?= [a-z]+ing\b)|do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
 TAKEN_BACK = frozenset({"never mind", "forget it", "scratch that", "cancel that", "on second thought"})
@@ -180,6 +181,7 @@ class ClauseReader:
     def stated(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
         found: list[Spoken] = []
+        text = _IS.sub(" is ", text)
         if spilled := _SPILLED.match(text):
             return self.named(spilled[1]) or Clause()
         text = _THERE_IS.sub(r"\2 \1", text)

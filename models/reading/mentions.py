@@ -39,7 +39,7 @@ _DETERMINERS = re.compile(
     r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
-    r"(?:it|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
+    r"(?:it|the thing|that thing|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
     r"|these)|all of them|all of it|each|each of them|each one"
     r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?"
     r"|the (?:two|three|four) of them"

@@ -12,7 +12,7 @@ _SUBJECT = (
     r"(?:the|my|our|your|his|her|its|their|that|this|these|those|a|an|some|all|both|no one|nobody|somebody|someone"
     r"|everybody|everyone|there|here|i|we|you|he|she|it|they|one|two|three|four|five|six|most|many|grandma|grandpa|mum"
     r"|mom|dad|daddy|mummy|[a-z]+(?= (?:and )?(?:[a-z]+ )?(?:is|are|was|were|has|have|stinks|smells|hurts"
-    r"|looks|seems|isn't|aren't)\b))"
+    r"|looks|seems|isn't|aren't|will|won't|would)\b))"
 )
 _AUXILIARY = (
     r"(?:is|are|was|were|am|isn't|aren't|wasn't|weren't|has|have|had|hasn't|haven't|will|won't|would|could|may"
