@@ -98,11 +98,16 @@ def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
         return None  # each of how many is not said
     text = _EACH.sub("", text)
     if (of := _ONE_OF.match(text)) and (name := _meant(text[of.end() :], known.many)):
-        return name, 1
+        return name, NUMBERS.index(of[1])
     if part := _PART.fullmatch(text):  # `two packs of pasta`
         counted = _number(part[1].strip()) if part[1] else 1
         vessel = text[: part.start(2)].split()[-2].removesuffix("s")
-        name = _meant(f"{part[2]} {vessel}", known.one) or _meant(part[2], known.one) or _meant(part[2], known.many)
+        name = (
+            _meant(f"{part[2]} {vessel}", known.one)
+            or _meant(f"{part[2].removesuffix('s')} {vessel}", known.one)
+            or _meant(part[2], known.one)
+            or _meant(part[2], known.many)
+        )
         if name is not None and counted and not _whole(text, known):
             return name, counted
     for words, number in _determined(text):
@@ -133,7 +138,7 @@ def _number(words: str) -> int:
     return NUMBERS.index(words) if words in NUMBERS[1:] else 0
 
 
-_ONE_OF = re.compile(r"one of (?:the|my|our|your) ")
+_ONE_OF = re.compile(r"(one|two|three|four) of (?:the|my|our|your) ")
 _PART = re.compile(
     r"((?:[a-z]+ )*?)(?:pack|packet|package|box|bottle|carton|pair|piece|sheet|roll|jar|can|tin|bag|tub|tube|slice|bit"
     r"|glass|bar|loaf|block|bunch|set|stick)(?:e?s)? of ([a-z' -]+)"

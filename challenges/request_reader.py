@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from hearth.challenges.paraphrase_things import UNSAID, Known
-from hearth.challenges.request_statements import Relation, Statements
+from hearth.challenges.request_statements import SWITCHED, Relation, Statements
 from hearth.challenges.request_tokens import (
     RefusedError,
     Token,
@@ -39,7 +39,9 @@ def read_request(text: str, known: Known, knowledge: Knowledge, doer: str, relat
     """
     try:
         reading = _Reading(knowledge, doer, relation)
-        plain, people = for_people(without_reasons(text))
+        plain, people = for_people(text)
+        rooms = frozenset(word for word, name in known.one.items() if knowledge.is_room(name))
+        plain = without_reasons(plain, known, rooms)
         asked = [each for each in re.split(r"(?<=[.!?;])\s+", plain) if not is_aside(each, known)]
         for sentence in sentences(list(tokens(" ".join(asked), known, people))):
             reading.sentence(sentence)
@@ -156,6 +158,8 @@ class _Reading(Statements):
 
     def _thing(self, token: Token, before: list[Token]) -> None:
         name, number = token.thing
+        if token.words.startswith(("a ", "an ", "one ", "another ", "some ")):
+            self.indefinite.add(name)
         is_place = bool(before) and "prep" in before[-1].kind.split() and self.mode not in ("turn_on", "turn_off", "no")
         if self.mode in ("fill", "dress"):
             relation = self.relation("in" if self.mode == "fill" else "on", name)
@@ -218,7 +222,7 @@ class _Reading(Statements):
         if self.waiting:
             if self.mode not in ("", "no", "turn_off"):
                 raise RefusedError
-            if any(number == 1 for _, number in self.waiting) and self.mode not in ("no", "turn_off"):
+            if any(name in self.indefinite for name, _ in self.waiting) and self.mode not in ("no", "turn_off"):
                 raise RefusedError
             self.none_on()
         elif self.said != "off":
@@ -246,6 +250,8 @@ class _Reading(Statements):
 
     def _banned(self) -> None:
         """Take `off limits` behind the one thing that is not to be opened."""
+        if not self.waiting and self.bans and not self.mode.strip("ban"):
+            return  # `it mustn't be opened`, of what was forbidden before
         if self.mode or len(self.waiting) != 1 or self.waiting[0][1] not in (1, UNSAID):
             raise RefusedError
         self.bans.append(self.waiting.pop()[0])
@@ -299,7 +305,7 @@ class _Reading(Statements):
         """Take a word for a thing named before; it says nothing new, except where a verb waits for it."""
         if words == "one" and any(number > 1 for _, number in self.waiting):
             raise RefusedError  # `two plates, one on the table`
-        if self.mode == "turn" and not self.waiting and self.said not in ("on", "off"):
+        if self.mode in ("turn", "turn_on") and not self.waiting and self.said not in ("on", "off"):
             self._turned_it()
         if self.mode in ("take", "hold") and not self.waiting and self.said not in ("held", "at", "on"):
             raise RefusedError
@@ -312,10 +318,10 @@ class _Reading(Statements):
         """
         names = [each for each in (self.last[1] if self.last else "", self.named) if each]
         kinds = ((name, self.knowledge.object_class(name)) for name in names)
-        found = next((name for name, kind in kinds if kind is not None and "HAS_SWITCH" in kind.properties), None)
+        found = next((name for name, kind in kinds if kind is not None and SWITCHED & set(kind.properties)), None)
         if found is None:
             raise RefusedError
-        self.waiting, self.mode = [(found, 1)], "turned"
+        self.waiting, self.mode = [(found, 1)], "turned" if self.mode == "turn" else self.mode
 
 
 def _always(does: Callable[[_Reading], None]) -> Callable[[_Here], bool]:

@@ -12,7 +12,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import HOLDS, Literal, Name
 
-_SWITCHED = frozenset({"HAS_SWITCH", "LIGHTABLE"})
+SWITCHED = frozenset({"HAS_SWITCH", "LIGHTABLE"})
+"""Properties of what can be on."""
 
 Counted = list[tuple[str, int]]
 Relation = Callable[[str, str], str | None]
@@ -33,6 +34,7 @@ class Statements:
         at: the place of things that follow, where it was said before them.
         last: the last place, and the last thing.
         said: the kind of the last statement.
+        indefinite: things of which one of several was meant, `a lamp`.
         waits: whether the place may wait for things of the next sentence, `Table for two.`
     """
 
@@ -47,6 +49,7 @@ class Statements:
     last: tuple[str, str] | None = None
     named: str = ""
     said: str = ""
+    indefinite: set[str] = field(default_factory=set)
     waits: bool = False
 
     def placed(self, relation: str, place: str) -> None:
@@ -95,7 +98,7 @@ class Statements:
         """Refuse things that are neither switched nor lit: `take the plates off`."""
         for name, _ in found:
             kind = self.knowledge.object_class(name)
-            if kind is None or not _SWITCHED & set(kind.properties):
+            if kind is None or not SWITCHED & set(kind.properties):
                 raise RefusedError
 
     def switched(self, found: Counted) -> None:

@@ -44,7 +44,8 @@ _JOINED = re.compile(r" (?:and|or|nor) ")
 _SUBJECT = re.compile(r"(.+?) (?:is|are|was|were|has|have|needs?) .+")
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
 _SPILLED = re.compile(
-    r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? (?:all over|on to|onto|on|over) (.+)$"
+    r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? "
+    r"(?:all over|on to|onto|on|over) (.+)$"
 )
 _FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
