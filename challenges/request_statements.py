@@ -13,7 +13,7 @@ from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import HOLDS, Literal, Name
 
 SWITCHED = frozenset({"HAS_SWITCH", "LIGHTABLE"})
-"""Properties of what can be on."""
+"""Properties of things that can be on."""
 
 Counted = list[tuple[str, int]]
 Relation = Callable[[str, str], str | None]

@@ -166,7 +166,7 @@ def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
 
 
 def _seated_last(acts: Sequence[Act]) -> Sequence[Act]:
-    """Return acts in which the agent sits after it has switched on what it then watches, as one clause asks for."""
+    """Return acts in which the agent switches a screen on before it sits down to watch."""
     found = list(acts)
     for at in range(len(found) - 2):
         seat, switch, watch = found[at : at + 3]
