@@ -50,7 +50,8 @@ _SPILLED = re.compile(
 _FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _NEGATION = re.compile(
-    r"(?:no(?= [a-z]+ing\b)|do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
+    r"(?:no(?= [a-z]+ing\b)|do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to"
+    r"|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
 TAKEN_BACK = frozenset({"never mind", "forget it", "scratch that", "cancel that", "on second thought"})
