@@ -22,6 +22,8 @@ FILES = (
     "more_paraphrases.txt",
     "requests_of_another_author.txt",
     "requests_of_a_second_author.txt",
+    "requests_of_a_third_author.txt",
+    "requests_of_a_fourth_author.txt",
 )
 OF_WAH = ("dinnertable", "coffeetable", "wineglass", "INSIDE(apple")
 

@@ -47,6 +47,8 @@ def known_nouns(knowledge: Knowledge, names: frozenset[str] = frozenset()) -> Kn
         spaced = name.replace("_", " ")
         one.setdefault(spaced, _own(name, knowledge, names))
         many.setdefault(plural(spaced), _own(name, knowledge, names))
+        if spaced.endswith("s") and not spaced.endswith("ss"):  # `two cards`
+            many.setdefault(spaced, _own(name, knowledge, names))
     for spelling in knowledge.object_spellings:
         found = knowledge.object_class(spelling)
         if found is not None and found.name in knowledge.objects:
@@ -92,16 +94,25 @@ def things(text: str, known: Known, people: int = 1) -> Counted | None:
 
 def _thing(text: str, known: Known, people: int) -> tuple[str, int] | None:
     each = _EACH.search(text)
+    if each and people < 2:
+        return None  # each of how many is not said
     text = _EACH.sub("", text)
     if (of := _ONE_OF.match(text)) and (name := _meant(text[of.end() :], known.many)):
-        return name, 1
+        return name, NUMBERS.index(of[1])
     if part := _PART.fullmatch(text):  # `two packs of pasta`
         counted = _number(part[1].strip()) if part[1] else 1
         vessel = text[: part.start(2)].split()[-2].removesuffix("s")
-        name = _meant(f"{part[2]} {vessel}", known.one) or _meant(part[2], known.one) or _meant(part[2], known.many)
+        name = (
+            _meant(f"{part[2]} {vessel}", known.one)
+            or _meant(f"{part[2].removesuffix('s')} {vessel}", known.one)
+            or _meant(part[2], known.one)
+            or _meant(part[2], known.many)
+        )
         if name is not None and counted and not _whole(text, known):
             return name, counted
     for words, number in _determined(text):
+        if text == f"a pair of {words}" and (name := _meant(words, known.one)):  # one pair of boots
+            return name, 1
         several = number > 1 or number in (EVERY, UNSAID)
         name = _meant(words, known.one) if number in (1, UNSAID, EVERY) else None
         if name is not None:
@@ -127,7 +138,7 @@ def _number(words: str) -> int:
     return NUMBERS.index(words) if words in NUMBERS[1:] else 0
 
 
-_ONE_OF = re.compile(r"one of (?:the|my|our|your) ")
+_ONE_OF = re.compile(r"(one|two|three|four) of (?:the|my|our|your) ")
 _PART = re.compile(
     r"((?:[a-z]+ )*?)(?:pack|packet|package|box|bottle|carton|pair|piece|sheet|roll|jar|can|tin|bag|tub|tube|slice|bit"
     r"|glass|bar|loaf|block|bunch|set|stick)(?:e?s)? of ([a-z' -]+)"

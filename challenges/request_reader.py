@@ -6,13 +6,22 @@ every thing must end somewhere, so that nothing is left out in silence.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from hearth.challenges.paraphrase_things import UNSAID, Known
-from hearth.challenges.request_statements import Relation, Statements
-from hearth.challenges.request_tokens import RefusedError, Token, sentences, tokens
+from hearth.challenges.request_statements import SWITCHED, Relation, Statements
+from hearth.challenges.request_tokens import (
+    RefusedError,
+    Token,
+    for_people,
+    is_aside,
+    sentences,
+    tokens,
+    without_reasons,
+)
 from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal
 from hearth.schemas.literals import HOLDS
@@ -30,7 +39,11 @@ def read_request(text: str, known: Known, knowledge: Knowledge, doer: str, relat
     """
     try:
         reading = _Reading(knowledge, doer, relation)
-        for sentence in sentences(list(tokens(text, known))):
+        plain, people = for_people(text)
+        rooms = frozenset(word for word, name in known.one.items() if knowledge.is_room(name))
+        plain = without_reasons(plain, known, rooms)
+        asked = [each for each in re.split(r"(?<=[.!?;])\s+", plain) if not is_aside(each, known)]
+        for sentence in sentences(list(tokens(" ".join(asked), known, people))):
             reading.sentence(sentence)
         return reading.goal()
     except RefusedError:
@@ -134,17 +147,19 @@ class _Reading(Statements):
 
     def _rests(self, here: _Here) -> bool:
         """Return whether the agent itself is to sit or lie: nothing was named for it, and a place follows at once."""
-        if here.words in ("have a seat", "take a seat", "get yourself"):
+        if here.words in ("have a seat", "take a seat"):
             return True
         if self.waiting and self.mode not in ("hold", "take"):
             return False
-        if here.words == "get" and not (here.after and here.after[0].words in ("onto", "on")):
+        if here.words in ("get", "get yourself") and not (here.after and here.after[0].words in ("onto", "on")):
             return False
         at = next((each for each in here.after if each.kind != "filler"), None)
         return (at is not None and "prep" in at.kind.split()) or here.words == "get onto"
 
     def _thing(self, token: Token, before: list[Token]) -> None:
         name, number = token.thing
+        if token.words.startswith(("a ", "an ", "one ", "another ", "some ")):
+            self.indefinite.add(name)
         is_place = bool(before) and "prep" in before[-1].kind.split() and self.mode not in ("turn_on", "turn_off", "no")
         if self.mode in ("fill", "dress"):
             relation = self.relation("in" if self.mode == "fill" else "on", name)
@@ -192,7 +207,7 @@ class _Reading(Statements):
             last = len(self.waiting) - 1
             if self.mode in ("take", "hold") and last:
                 raise RefusedError
-            self.switched(self.taken())
+            self.lit_or_worn(self.taken())
             self.mode = ""
         elif self.mode == "turn":
             self.mode = "turn_on"
@@ -207,7 +222,7 @@ class _Reading(Statements):
         if self.waiting:
             if self.mode not in ("", "no", "turn_off"):
                 raise RefusedError
-            if any(number == 1 for _, number in self.waiting) and self.mode not in ("no", "turn_off"):
+            if any(name in self.indefinite for name, _ in self.waiting) and self.mode not in ("no", "turn_off"):
                 raise RefusedError
             self.none_on()
         elif self.said != "off":
@@ -232,6 +247,14 @@ class _Reading(Statements):
         elif not (is_named and self.bans):
             self._verb("ban")
         return True
+
+    def _banned(self) -> None:
+        """Take `off limits` behind the one thing that is not to be opened."""
+        if not self.waiting and self.bans and not self.mode.strip("ban"):
+            return  # `it mustn't be opened`: of the thing that was forbidden before
+        if self.mode or len(self.waiting) != 1 or self.waiting[0][1] not in (1, UNSAID):
+            raise RefusedError
+        self.bans.append(self.waiting.pop()[0])
 
     def _shut(self) -> None:
         if self.mode not in ("take", "put") or len(self.waiting) != 1:
@@ -282,8 +305,23 @@ class _Reading(Statements):
         """Take a word for a thing named before; it says nothing new, except where a verb waits for it."""
         if words == "one" and any(number > 1 for _, number in self.waiting):
             raise RefusedError  # `two plates, one on the table`
+        if self.mode in ("turn", "turn_on") and not self.waiting and self.said not in ("on", "off"):
+            self._turned_it()
         if self.mode in ("take", "hold") and not self.waiting and self.said not in ("held", "at", "on"):
             raise RefusedError
+
+    def _turned_it(self) -> None:
+        """Take `turn it`: of the last place where that has a switch, else of the last thing.
+
+        Raises:
+            RefusedError: neither has a switch.
+        """
+        names = [each for each in (self.last[1] if self.last else "", self.named) if each]
+        kinds = ((name, self.knowledge.object_class(name)) for name in names)
+        found = next((name for name, kind in kinds if kind is not None and SWITCHED & set(kind.properties)), None)
+        if found is None:
+            raise RefusedError
+        self.waiting, self.mode = [(found, 1)], "turned" if self.mode == "turn" else self.mode
 
 
 def _always(does: Callable[[_Reading], None]) -> Callable[[_Here], bool]:
@@ -325,6 +363,8 @@ _DOES: tuple[tuple[str, Callable[[_Here], bool]], ...] = (
     ("open", lambda here: here.reading._open(here)),
     ("topped", lambda here: _always(lambda reading: reading._topped(here.words))(here)),
     ("there", _always(_Reading._there)),
+    ("banned", _always(_Reading._banned)),
+    ("wear", _begins("wear")),
     ("rest", lambda here: here.reading._rest(here)),
     ("hold", _begins("hold")),
     ("take", _begins("take")),

@@ -12,7 +12,8 @@ from hearth.kb.knowledge import Knowledge
 from hearth.schemas.goals import Goal, Joined
 from hearth.schemas.literals import HOLDS, Literal, Name
 
-_SWITCHED = frozenset({"HAS_SWITCH", "LIGHTABLE"})
+SWITCHED = frozenset({"HAS_SWITCH", "LIGHTABLE"})
+"""Properties of things that can be on."""
 
 Counted = list[tuple[str, int]]
 Relation = Callable[[str, str], str | None]
@@ -33,6 +34,7 @@ class Statements:
         at: the place of things that follow, where it was said before them.
         last: the last place, and the last thing.
         said: the kind of the last statement.
+        indefinite: things of which one of several was meant, `a lamp`.
         waits: whether the place may wait for things of the next sentence, `Table for two.`
     """
 
@@ -47,6 +49,7 @@ class Statements:
     last: tuple[str, str] | None = None
     named: str = ""
     said: str = ""
+    indefinite: set[str] = field(default_factory=set)
     waits: bool = False
 
     def placed(self, relation: str, place: str) -> None:
@@ -75,8 +78,10 @@ class Statements:
         """End a clause: what waits goes where the words before it said."""
         if self.mode in ("hold", "take") and self.waiting:
             self.emit("held", [((HOLDS, self.doer, name), number) for name, number in self.taken()])
+        elif self.mode == "wear" and self.waiting:
+            self.worn(self.taken())
         elif self.mode == "turn_on" and self.waiting:
-            self.switched(self.taken())
+            self.lit_or_worn(self.taken())
         elif self.mode == "turn_off" and self.waiting:
             self.none_on()
         elif self.at is not None and self.waiting and self.mode in ("", "put"):
@@ -93,13 +98,28 @@ class Statements:
         """Refuse things that are neither switched nor lit: `take the plates off`."""
         for name, _ in found:
             kind = self.knowledge.object_class(name)
-            if kind is None or not _SWITCHED & set(kind.properties):
+            if kind is None or not SWITCHED & set(kind.properties):
                 raise RefusedError
 
     def switched(self, found: Counted) -> None:
         """Say that things are on."""
         self._need_switches(found)
         self.emit("on", [(("ON", name), number) for name, number in found])
+
+    def lit_or_worn(self, found: Counted) -> None:
+        """Say that things are on, or that the agent wears them: `put on a hat`, `put on the lamp`."""
+        is_worn = all(self.knowledge.affords("PutOn", 0, name) for name, _ in found)
+        (self.worn if is_worn else self.switched)(found)
+
+    def worn(self, found: Counted) -> None:
+        """Say that the agent has things on.
+
+        Raises:
+            RefusedError: they are nothing to wear.
+        """
+        if not all(self.knowledge.affords("PutOn", 0, name) for name, _ in found):
+            raise RefusedError
+        self.emit("worn", [(("ON", name, self.doer), number) for name, number in found])
 
     def none_on(self) -> None:
         """Say that none of the waiting things is on.

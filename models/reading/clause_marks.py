@@ -34,17 +34,46 @@ _WHERE = re.compile(
     r" (?:right )?place for (.+))$"
 )
 _OFF = re.compile(r"\b((?:turn|switch|put|shut)(?:s|ed|ing)? (?:the |it|that )(?:[a-z]+ ){0,3}?)of(?= again|$|,| and )")
+_DONE_WITH = re.compile(
+    r"^((?:when|once|after|as soon as) (?:you|you're|your|you are|we|we're|i|i'm) (?:(?:are|am|have|'ve) )?"
+    r"(?:done|finished|through) with [a-z ]+?),? ((?:it|they|put|that|this|place|take|bring|wash|throw)\b.+)$"
+)
+_MAY_I = re.compile(
+    r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try"
+    r"|word)\b|.+ (?:on|in) )"
+)
+_FOR_ME = re.compile(r"^((?:please )?(?:put|set|lay|stick|leave|place)) me ")
+_COUNTED = re.compile(r"^(.+?),? (?:please,? )?(two|three|four|five|six|both|all)(?: of (?:them|those)| pairs)(, .+)?$")
+_ELLIPTICAL = re.compile(r"^(need|want|fancy) (?=my |the |a |an |some )")
+_BODY = re.compile(r"\b(your|my) (face|hands?|hair|feet|body)\b(.+?)\b(dry|pat|rub)( off)? (?:it|them)\b")
+_SPOT = re.compile(
+    r"\b(in|on|at|into|onto|to) the (?:very |right in the )?(?:middle|center|centre|edge|corner|end|foot|head|side"
+    r"|left side|right side|back|front|bottom) of (?=the |my |your |our |a |an |this |that )"
+)
+"""A part of a place: a thing in the middle of a table lies on the table."""
+
 _WHEN = re.compile(r"^(?:after|before|once|when|while|as soon as) ")
 
 
 def marked(text: str) -> str:
     """Return a sentence in small letters with the comma behind its first clause, where it is certain."""
     text = _OFF.sub(r"\1off", _THERE_NEEDS.sub(r"\1 \2 ", text))
+    text = _ELLIPTICAL.sub(r"i \1 ", text)
+    text = _DONE_WITH.sub(r"\1, \2", _FOR_ME.sub(r"\1 ", _MAY_I.sub("bring me ", text)))
+    if found := _COUNTED.match(text):
+        text = f"{_with_number(found[1], found[2])}{found[3] or ''}"
+    text = _SPOT.sub(r"\1 ", _BODY.sub(r"\1 \2\3\4\5 \1 \2", text))
     if found := _WHERE.match(text):
         return f"put {found[2] or found[3]} to {found[1]}"
     for pattern in (_UNMARKED, _DOING, _DONE, _TOOL):
         text = pattern.sub(r"\1, \2", text)
     return text
+
+
+def _with_number(text: str, number: str) -> str:
+    """Return a clause with the number that is said behind it: `put two glasses on the table`."""
+    first, _, rest = text.partition(" ")
+    return f"{first} {number} {rest}" if first in table_words() and first in verb_lemmas(first) else f"{number} {text}"
 
 
 def with_comma(text: str) -> Iterator[str]:

@@ -10,6 +10,7 @@ from hearth.kb.language.pronouns import Mentioned
 from hearth.kb.language.reading_modes import Fuzzy
 from hearth.kb.language.sentences import asked_steps
 from hearth.kb.language.step_understanding import Candidate
+from hearth.models.reading.antecedents import DOORS, MANY, Antecedents
 from hearth.models.reading.clause_matches import matches, plain_words, variants
 from hearth.models.reading.kept_states import BACKWARD, BANNED_PLACE, CHANGES, FURTHER, HANDS_OFF, LEFT_ALONE, STAYS
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
@@ -38,30 +39,19 @@ MOST_WORDS = 60
 DEEPEST = 2
 """Rewordings of a clause within one another, at most."""
 
-_CLOSE = "Close"
-_ROOM = frozenset({"room"})
-_MANY = frozenset(
-    {
-        "them",
-        "they",
-        "both",
-        "the both",
-        "the two",
-        "them both",
-        "them all",
-        "both of them",
-        "all of them",
-        "these",
-        "those",
-        "all",
-    }
-)
+_IS = re.compile(r"'s (?=(?:[a-z]+ ?){1,3}$)")
+_JOINED = re.compile(r" (?:and|or|nor) ")
+_SUBJECT = re.compile(r"(.+?) (?:is|are|was|were|has|have|needs?) .+")
 _THERE_IS = re.compile(r"^((?:in|on|at|by|under|next to) .+?) (?:there )?(?:is|are|lies|lie|stands|sits|hangs) (.+)$")
-_DOORS = frozenset({"the door", "the doors", "its door", "the lid", "door"})
-_HAS_DOOR = ("CAN_OPEN", "CONTAINERS")
-_OPENS = frozenset({"CAN_OPEN", "HAS_SWITCH"})
+_SPILLED = re.compile(
+    r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? "
+    r"(?:all over|on to|onto|on|over) (.+)$"
+)
+_FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
+_PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _NEGATION = re.compile(
-    r"(?:do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to|instead of|rather than"
+    r"(?:no(?= [a-z]+ing\b)|do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to"
+    r"|instead of|rather than"
     r"|(?:you )?(?:do not|don't|needn't|need not|shouldn't|should not|must not|mustn't) (?:need to|have to)?) ?(.+)"
 )
 TAKEN_BACK = frozenset({"never mind", "forget it", "scratch that", "cancel that", "on second thought"})
@@ -85,11 +75,14 @@ class ClauseReader:
 
     Attributes:
         missing: what the home lacks of the things that were named.
+        placed: the places on which things were put so far.
     """
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.known = scene, scene.known
+        self.antecedents = Antecedents(scene)
         self.missing: dict[str, None] = {}
+        self.placed: dict[ObjectRef, Refs] = {}
 
     def read(self, text: str, spoken: Sequence[Spoken], *, steps: bool = True, depth: int = 0) -> Clause | None:
         """Return what a clause asks for; None where it is not understood.
@@ -190,17 +183,30 @@ class ClauseReader:
     def stated(self, text: str) -> Clause:
         """Return a clause that asks for nothing, with the things that it speaks of."""
         found: list[Spoken] = []
+        text = _IS.sub(" is ", text)
+        if spilled := _SPILLED.match(text):
+            return self.named(spilled[1]) or Clause()
         text = _THERE_IS.sub(r"\2 \1", text)
+        if (subject := _SUBJECT.match(text)) and (named := self.named(subject[1])):
+            found += named.spoken
         for name in things_in(self.known, text):
+            self.scene.speak_of_rooms((name,))
             if refs := self.scene.some((name,), 1):
-                found.append(Spoken(refs, "", bool(found)))
+                found.append(Spoken(refs, "", bool(found) and not _JOINED.search(text)))
+        things = [each for each in found if not each.is_place and len(each.refs) == 1]
+        if len(things) > 1 and _JOINED.search(text):
+            found.append(Spoken(tuple(dict.fromkeys(ref for each in things for ref in each.refs)), ""))  # `them both`
         return Clause(spoken=tuple(found))
 
     def named(self, text: str) -> Clause | None:
         """Return a part that only names things, of which the next may say more; None where it does not."""
-        mentions = mentions_in(self.known, plain_words(text))
+        plain = _PLACE_IN_ORDER.sub("", plain_words(text))
+        is_bare = _FIRST_WORDS.sub("", text.strip(" ,.!?")).startswith(plain)
+        mentions = mentions_in(self.known, plain)
         refs = [self.scene.things(each, frozenset()) for each in mentions if not each.back]
-        return Clause(spoken=tuple(Spoken(each, "") for each in refs)) if refs and all(refs) else None
+        if not refs or not all(refs):
+            return None
+        return Clause(spoken=tuple(Spoken(each, "") for each in refs), named=plain if is_bare else "")
 
     def _asked(self, text: str, spoken: Sequence[Spoken], steps: bool) -> Clause | None:
         lacking: dict[str, str] = {}
@@ -229,7 +235,10 @@ class ClauseReader:
                 first = next((act.action for act in way if name in act.slots), "")
                 things[name] = self._things(slots[name], needs, first, spoken)
             for name, needs in request.it.items():
-                things[name] = self._referred(needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place)))
+                spoken = [each for each in spoken if each.refs not in things.values()]
+                things[name] = self.antecedents.referred(
+                    needs, "", tuple(sorted(spoken, key=lambda each: not each.is_place))
+                )
             if not all(things.values()):
                 return None
             made = self._made(way, things, count, text)
@@ -252,12 +261,16 @@ class ClauseReader:
         found: list[ObjectRef] = []
         for mention in mentions_in(self.known, text):
             if mention.another:
-                refs = self._another(needs, spoken)
+                refs = self.antecedents.another(needs, spoken)
             elif mention.back:
-                refs = self._referred(needs, action, spoken, is_many=mention.words in _MANY)
-            elif mention.words in _DOORS and (own := self._opened(spoken, mention.words)):
+                refs = self.antecedents.referred(needs, action, spoken, is_many=mention.words in MANY)
+                if 0 < mention.count <= len(refs):
+                    refs = refs[: mention.count]
+                elif mention.count > 0 and refs:
+                    refs = self._by_class((refs[0].name,), mention.count)
+            elif mention.words in DOORS and (own := self.antecedents.opened(spoken, mention.words)):
                 refs = own
-            elif own := self._meant_before(mention, spoken):
+            elif own := self.antecedents.meant_before(mention, spoken):
                 refs = own if all(fits(self.known, ref.name, needs) for ref in own) else ()
             else:
                 refs = self.scene.things(mention, needs, action)
@@ -267,37 +280,6 @@ class ClauseReader:
                 return ()
             found += [ref for ref in refs if ref not in found]
         return tuple(found)
-
-    def _another(self, needs: frozenset[str], spoken: Sequence[Spoken]) -> Refs:
-        groups = [each.refs for each in spoken if not each.is_place]
-        refs = next((each for each in groups if all(fits(self.known, ref.name, needs) for ref in each)), ())
-        taken = {ref.node for each in spoken for ref in each.refs if ref.node is not None}
-        return self.scene.others(refs, taken) if refs else ()
-
-    def _meant_before(self, mention: Mention, spoken: Sequence[Spoken]) -> Refs:
-        """Return the thing of a class of several that was spoken of before: `the pan` is the frying pan."""
-        is_definite = mention.count == 1 and not mention.places and mention.words.startswith(("the ", "that ", "this "))
-        if not is_definite or len(mention.classes) < 2 or self.scene.world is None:
-            return ()
-        return next((each.refs for each in spoken if len(each.refs) == 1 and each.refs[0].name in mention.classes), ())
-
-    def _opened(self, spoken: Sequence[Spoken], words: str) -> Refs:
-        """Return the furniture that was spoken of last, where it has a door of its own."""
-        if words.startswith("its "):
-            return next((each.refs for each in spoken if self.known.has(each.refs[0].name, "CAN_OPEN")), ())
-        last = spoken[0].refs if spoken and (spoken[0].is_place or spoken[0].action == "Open") else ()
-        return last if all(self.known.has(ref.name, need) for ref in last for need in _HAS_DOOR) else ()
-
-    def _referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
-        """Return the things of words before that `it` or `them` stands for."""
-        groups = list(spoken[:1] if needs == _ROOM else spoken)
-        if action == _CLOSE:
-            groups.sort(key=lambda each: (each.action != "Open", not each.is_place))
-        elif needs.isdisjoint(_OPENS):
-            groups.sort(key=lambda each: each.is_place)
-        if is_many:
-            groups.sort(key=lambda each: len(each.refs) < 2)
-        return next((each.refs for each in groups if all(fits(self.known, ref.name, needs) for ref in each.refs)), ())
 
     def _made(
         self, way: Sequence[ActTemplate], things: Mapping[str, Refs], count: int, text: str
@@ -350,7 +332,7 @@ class ClauseReader:
                     action, place = usual_place(self.scene, objects[0])
                     yield Act(action, (objects[0], *place), text)
                 elif act.action == PUT_NEAR:
-                    place = self.scene.support(objects[1])
+                    place = self.placed.get(objects[1], ()) or self.scene.support(objects[1])
                     if place:
                         yield Act("PutBack", (objects[0], *place), text)
                     else:
@@ -361,6 +343,8 @@ class ClauseReader:
                 elif act.action == PUT_TO:
                     yield Act(usual_way(self.known, *objects), objects, text)
                 else:
+                    if act.action == "PutBack" and len(objects) > 1:
+                        self.placed[objects[0]] = objects[1:]
                     yield Act(self._fitting(act.action, objects), objects, text, act.optional)
 
     def _fitting(self, action: str, objects: Refs) -> str:

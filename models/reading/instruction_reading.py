@@ -9,15 +9,17 @@ from typing import NamedTuple
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.clause_marks import DESCRIPTION, marked, with_comma
 from hearth.models.reading.clause_matches import plain_words
-from hearth.models.reading.clause_reader import MOST_WORDS, TAKEN_BACK, ClauseReader, unknown_ban
+from hearth.models.reading.clause_reader import MOST_WORDS, ClauseReader, unknown_ban
+from hearth.models.reading.hinted_requests import hinted_request
 from hearth.models.reading.mentioned_nodes import Scene
 from hearth.models.reading.mentions import is_adjective, mentions_in
 from hearth.models.reading.misspelled_words import spelled
-from hearth.models.reading.request_table import words
-from hearth.models.reading.rewordings import orders
+from hearth.models.reading.rewordings import done_first, orders
+from hearth.models.reading.sentence_parts import BAN, PARTS, STATEMENT, is_aside, main_clause
 from hearth.models.reading.shorthand import written_out
 from hearth.models.reading.spoken_corrections import corrected
 from hearth.models.reading.spoken_things import Act, Clause, Spoken
+from hearth.models.reading.telegrams import is_unused, names_furniture, request_of
 from hearth.schemas.literals import Literal, Name
 from hearth.simulation.world.world import World
 
@@ -34,13 +36,6 @@ SUMMED_UP = 3
 """Sentences from which the first may sum up the others."""
 
 _SENTENCES = re.compile(r"\.\.+\s*|…\s*|(?<=[.!?;])\s+|\n+|(?<=[a-z])\. ")
-_PARTS = re.compile(
-    r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?afterwards |;? and also |,? and |,? but |,? plus "
-    r"|, so (?!that\b)| so (?=(?:please|put|turn|switch|open|close|get|take|bring|grab|go|sit|shut"
-    r"|can|could|would|make|let's|lock"
-    r"|wash|wipe|clean|unplug) )|,? and so (?!on\b|that\b)"
-    r"|[;,:] (?:and )?| - | – | — |\. )"
-)
 _ALTERNATIVE = re.compile(
     r"(?:or(?: else| maybe| at least| perhaps| rather)?|failing that|if (?:you|there|that|not|it).*|otherwise"
     r"|say|preferably|ideally"
@@ -75,19 +70,17 @@ _OWN_WISH = re.compile(r"(?:i|we)(?: would|'d|'ll| will)? (?:want|need|like|love
 _BEGINNING = re.compile(r"[a-z]+(?: (?:on|into|in|off|up|out|down|away)\b)?")
 _NEITHER = re.compile(r"neither (.+?) nor (.+?) (should|must|may|can|has to|needs to) be ")
 _TITLE = re.compile(r"(?P<title>[^:]{3,60}): (?P<rest>.+)")
-_STATEMENT = re.compile(
-    r"(?:i|we)(?: would|'d| will|'ll)? (?:want|need|like|love|wish|expect|ask)(?: for)?(?: you)? to "
-)
 _OBSERVED = re.compile(r"(?:i|we|you|one) (?:can |could )?(?:see|saw|hear|heard|notice|noticed|smell) (?!to\b)")
 _SITUATION = re.compile(r"(?:it is|it's|i am|i'm|i can't|i cannot|we are|we're)\b")
 """The beginning of a sentence that may ask for something where it stands alone, as `it is dark in here` does."""
+_VERB = re.compile(r"((?:pick up|put down|take out|take off|(?:turn|switch) (?:on|off)|turn|switch|[a-z]+)) ")
+_SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
-_WISH = re.compile(
-    r"(?:i|we)(?: would|'d)? (?:want|need|like|have|love) to (?:see|watch|read|sleep|rest|relax|eat|drink|work"
-    r"|know|hear|listen|be|cook|feel"
-    r"|write|sit|lie|play|enjoy|study)\b"
+
+_MY_PLAN = re.compile(
+    r"(?:i|we)(?:'ll| will| am going to| are going to|'m going to|'re going to|'m about to|'re about to) "
 )
-_VERB = re.compile(r"((?:pick up|put down|take out|take off|turn|switch|[a-z]+)) ")
+_NOT_WITHOUT = re.compile(r"(?:do not|don't|never) .+ (?:without|until|before) ")
 
 
 class Reading(NamedTuple):
@@ -123,10 +116,15 @@ def read_text(text: str, known: Knowledge, world: World | None = None) -> Readin
         if plain:
             reader.sentence(marked(_NEITHER.sub(r"\1 and \2 \3 not be ", plain)))
     is_idle = not reader.unread and not any(clause.acts or clause.forbidden for clause in reader.found)
-    if is_idle and (wish := _STATEMENT.match(whole.lower().strip())):
+    wish = STATEMENT.match(whole.lower().strip())
+    if is_idle and wish:
         reader.sentence(whole.lower().strip(" .!?")[wish.end() :])  # `I want to hear some music`
     if reader.found and not reader.unread and not any(clause.acts for clause in reader.found) and reader.named:
         reader.sentence(f"bring me {reader.named}")  # `my glasses, please`
+    is_nothing = not any(clause.acts or clause.forbidden for clause in reader.found)
+    if is_nothing and not wish and (hint := hinted_request(whole)):
+        reader = _Text(ClauseReader(Scene(known, world)), is_long=False)
+        reader.sentence(hint)  # `I'm thirsty`
     left = len(text[LONGEST:].split())
     reading = reader.reading()
     return reading._replace(unread=(*reading.unread, f"{left:,} more words")) if left else reading
@@ -157,7 +155,7 @@ class _Text:
             self.first = len(self.found)
 
     def _sentence(self, text: str) -> None:
-        is_one = _PARTS.search(text) is None
+        is_one = PARTS.search(text) is None
         if is_one and len(text.split()) > MOST_WORDS:
             self.unread.append(text)
             return
@@ -181,7 +179,7 @@ class _Text:
     def _whole(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         if _OBSERVED.match(text):
             return None
-        found = self.clauses.read(text, spoken, steps=_PARTS.search(text) is None)
+        found = self.clauses.read(text, spoken, steps=PARTS.search(text) is None)
         return (found,) if found else None
 
     def _in_order(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
@@ -189,7 +187,8 @@ class _Text:
         for first, later in orders(text):
             main = self._read(later, spoken)
             known = (*_all_spoken(main), *spoken)
-            ways = (self._read(each, known) for each in (first, f"make sure {first}"))
+            texts = (first, f"make sure {first}", done_first(self.clauses.known, first))
+            ways = (self._read(each, known) for each in texts if each)
             one = next((each for each in ways if each and any(clause.acts for clause in each)), None)
             two = self._read(later, (*_all_spoken(one), *known)) if one else None
             if one and two and any(each.acts for each in two):
@@ -204,6 +203,9 @@ class _Text:
         stated = self.clauses.named(found["title"]) or self.clauses.stated(found["title"])
         read = self._read(found["rest"], (*stated.spoken, *spoken))
         if read and not any(each.acts for each in read):  # `get dressed: pants and a shirt`
+            is_named = self.clauses.named(found["title"]) and not self._is_furniture(found["title"])
+            if is_named and self._is_furniture(found["rest"]):
+                return self._put_in(found["rest"], found["title"], spoken)  # `towel: rack`
             if (placed := self._put_in(found["title"], found["rest"], spoken)) is not None:
                 return placed
             start = _BEGINNING.match(found["title"])
@@ -228,7 +230,7 @@ class _Text:
 
     def _subordinate(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a sentence without that before its comma that says when or why."""
-        parts = _main(text)
+        parts = main_clause(text)
         if not parts:
             return None
         stated = self.clauses.stated(parts[0])
@@ -236,12 +238,27 @@ class _Text:
         return (stated, *read) if read else None
 
     def _add(self, clauses: Sequence[Clause]) -> None:
+        clauses = clauses if self.is_long else self._telegraphed(clauses)
         self.found += clauses
         self.spoken = (*_all_spoken(clauses), *self.spoken)[:12]
 
+    def _telegraphed(self, clauses: Sequence[Clause]) -> list[Clause]:
+        """Return clauses with the acts that bare names among them stand for."""
+        found, known = list(clauses), self.clauses.known
+        if len(found) < 2:
+            return found
+        for at, clause in enumerate(found):
+            is_put_next = at + 1 < len(found) and names_furniture(known, found[at + 1])
+            if is_unused(clause, found) and not (is_put_next and not names_furniture(known, clause)):
+                before = (*_all_spoken(found[:at]), *self.spoken)
+                request = request_of(known, clause, before)
+                read = self.clauses.read(request, before, steps=False) if request else None
+                found[at] = read or clause
+        return found
+
     def _read(self, text: str, spoken: tuple[Spoken, ...]) -> tuple[Clause, ...] | None:
         """Return the clauses of a text; None where a part of it is not understood."""
-        pieces = _PARTS.split(text)
+        pieces = PARTS.split(text)
         return self._joined(pieces[::2], pieces[1::2], spoken, "") if len(pieces) < 2 * MOST_PARTS else None
 
     def _joined(
@@ -266,10 +283,10 @@ class _Text:
 
     def _one(self, text: str, spoken: tuple[Spoken, ...], verb: str, *, is_all: bool = False) -> Clause | None:
         """Return a clause; one without a verb has that of the clause before, and an aside asks for nothing."""
-        is_single = _PARTS.search(text) is None
+        is_single = PARTS.search(text) is None
         is_statement = (
             _OBSERVED.match(text)
-            or (not is_all and not self.is_long and _PERFECT.match(text))
+            or (not is_all and not self.is_long and (_PERFECT.match(text) or _MY_PLAN.match(text)))
             or (not is_all and _SITUATION.match(text) and is_aside(text))
         )
         if is_single and is_statement:
@@ -280,8 +297,15 @@ class _Text:
         if verb and not text.startswith(verb) and not is_aside(text):
             read = self.clauses.read(f"{verb} {plain_words(text)}", spoken, steps=False)
         if read is None and is_single:
-            read = self._stated(text, spoken)
+            read = self._ordered(text, spoken) or self._stated(text, spoken)
         return read
+
+    def _ordered(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
+        """Return a part of a sentence that says an order, as `don't go out without a hat` does, as one clause."""
+        if not _NOT_WITHOUT.match(text):
+            return None
+        found = self._in_order(text, spoken)
+        return Clause(tuple(act for each in found for act in each.acts), spoken=_all_spoken(found)) if found else None
 
     def _stated(self, text: str, spoken: tuple[Spoken, ...]) -> Clause | None:
         """Return a part of a sentence that asks for nothing, with the things that it speaks of."""
@@ -289,15 +313,15 @@ class _Text:
             if BAN.match(text):
                 return Clause(forbidden=unknown_ban(text))
             return self.clauses.stated(text)
-        if re.fullmatch(r"[a-z]+", text) and is_adjective(text):
-            return Clause()
         if (named := self.clauses.named(text)) is not None and not self.named:
             self.named = plain_words(text)
+        if named is None and re.fullmatch(r"[a-z]+", text) and is_adjective(text):
+            return Clause()
         return named
 
     def _in_part(self, text: str) -> None:
         """Read the parts of a sentence that are understood, and keep the others as they are."""
-        pieces = _PARTS.split(text)
+        pieces = PARTS.split(text)
         parts, joints = pieces[::2], pieces[1::2]
         at, verb = 0, ""
         while at < len(parts):
@@ -341,33 +365,8 @@ def _all_spoken(clauses: Sequence[Clause] | None) -> tuple[Spoken, ...]:
     return tuple(each for clause in reversed(clauses or ()) for each in clause.spoken)
 
 
-_REASON = re.compile(r"((?:i|we|you|they|he|she|it|the|my|our|your|there|this|that)\b.+?), so (?!that\b)(.+)")
-_SUBORDINATE = re.compile(
-    r"(?:after|once|when|before|as soon as|if|while|since|because|as|whenever|in case|now that|to|in order to"
-    r"|for|at|in|from|on|with|by|over|under|inside) "
-    r"(.+?), (.+)"
-)
-
-
-def _main(text: str) -> tuple[str, str] | None:
-    """Return the clause of a sentence that says when or why, and the rest behind its comma; None without one."""
-    found = _SUBORDINATE.fullmatch(text) or _REASON.fullmatch(text)
-    return (found[1], found[2]) if found else None
-
-
-BAN = re.compile(r"(?:do not|don't|never|without|not|no need to) ")
-"""The beginning of an aside that says what is not to be done."""
-
-
-def is_aside(text: str) -> bool:
-    """Return whether a clause asks for nothing."""
-    if _PARTS.search(text) or (_STATEMENT.match(text) and not _WISH.match(text)):
-        return False
-    if text in TAKEN_BACK:
-        return False
-    return any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain_words(text))) if each)
-
-
 def _verb_of(text: str) -> str:
+    if found := _SWITCHED.fullmatch(plain_words(text)):
+        return f"turn {found[1]}"
     found = _VERB.match(plain_words(text))
     return found[1] if found else ""

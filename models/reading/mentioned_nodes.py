@@ -36,6 +36,8 @@ def fits(known: Knowledge, name: str, needs: frozenset[str]) -> bool:
     kinds = {name, *known.same_class(name)[:1], *known.ancestors(name)}
     if any(known.has(name, need[1:]) or need[1:] in kinds for need in needs if need[0] == "!"):
         return False
+    if all(need[0] == "!" for need in needs):
+        return True
     return not needs.isdisjoint(kinds) or any(known.has(name, need) for need in needs) or _is_room(known, name, needs)
 
 
@@ -48,12 +50,14 @@ class Scene:
 
     Attributes:
         avoided: classes that `some` passes over, such as those of things not to be used.
+        room: the room that was spoken of last, in which things without a place are looked for first; -1 where none was.
     """
 
     def __init__(self, known: Knowledge, world: World | None) -> None:
         self.known, self.world = known, world
         self.numbers: dict[str, list[int]] = {}
         self.avoided: frozenset[str] = frozenset()
+        self.room = -1
 
     def has(self, name: str) -> bool:
         """Return whether there is a thing of a class; without a home, there is one of each."""
@@ -67,9 +71,12 @@ class Scene:
             needs: properties, kinds or classes of which they have one.
             action: what is done with them; the things for which that changes something come first.
         """
+        self.speak_of_rooms([name for _, names in mention.places for name in names] or mention.classes[:1])
         classes = [name for name in mention.classes if fits(self.known, name, needs)]
         if self.world is None:
             return tuple(ObjectRef(classes[0], n) for n in range(1, max(mention.count, 1) + 1)) if classes else ()
+        if classes and self._is_other(classes[0], mention):
+            return ()
         found = self._nodes(classes, mention)
         left_out = {node for other in mention.others for node in self._nodes(other.classes, other)}
         ordered = self._ordered([node for node in found if node not in left_out], action)
@@ -80,6 +87,19 @@ class Scene:
             if mention.count == SEVERAL and self._is_carried(ordered):
                 ordered = ordered[: MOST_CARRIED if action != "Grab" else MOST_HELD]
         return tuple(map(self._ref, ordered)) if len(ordered) <= MOST else ()
+
+    def speak_of_rooms(self, names: Sequence[str]) -> None:
+        """Note the room that is spoken of, where the home has one room of these classes."""
+        if self.world is None:
+            return
+        rooms = [i for name in names if self.known.is_room(name) for i in indices(self.world.home.instances(name))]
+        if len(rooms) == 1:
+            self.room = rooms[0]
+
+    def _is_other(self, name: str, mention: Mention) -> bool:
+        """Return whether a class would take the place of one that the home has, but that does not fit."""
+        first = mention.classes[0]
+        return name != first and name in self.known.stand_ins(first) and self.has(first)
 
     def _to_change(self, nodes: list[int], action: str) -> list[int]:
         """Return the things on which an act changes something; all where it changes none."""
@@ -137,6 +157,9 @@ class Scene:
         assert self.world is not None
         found: list[int] = []
         is_all = mention.count <= 0 and mention.is_group
+        if mention.count > 1:  # six glasses are six of one class, where the home has as many
+            enough = [name for name in classes if len(self._named(name)) >= mention.count]
+            classes = [*enough, *(name for name in classes if name not in enough)]
         for is_placed in (True, False) if mention.places else (False,):
             for name in classes:
                 nodes = [i for i in self._named(name) if i not in found]
@@ -187,7 +210,15 @@ class Scene:
         state = self.known.state_of(action) if action else ""
         done = world.states[STATE_ID[state]] if state in STATE_ID and state in OPPOSITE else 0
         here = edge_rows.agent_room(world, world.agents[0]) if world.agents else -1
-        return sorted(nodes, key=lambda i: (done >> i & 1, edge_rows.room_of(world, i) != here))
+        spoken = 1 << self.room if self.room >= 0 else 0
+        return sorted(
+            nodes,
+            key=lambda i: (
+                bool(spoken) and not self._rooms_of(i) & spoken,
+                done >> i & 1,
+                edge_rows.room_of(world, i) != here,
+            ),
+        )
 
     def _ref(self, node: int) -> ObjectRef:
         assert self.world is not None

@@ -39,18 +39,20 @@ _DETERMINERS = re.compile(
     r"|other|same|which|what)\s+)+"
 )
 _PRONOUN = re.compile(
-    r"(?:it|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
+    r"(?:it|the thing|that thing|them|they|that|this|those|these|one|ones|both|the both|the two|both of (?:them|those"
     r"|these)|all of them|all of it|each|each of them|each one"
     r"|the (?:first|second|other|last)(?: one)?|that one|this one|some|some of (?:it|them)|the same(?: one)?"
     r"|the (?:two|three|four) of them"
     r"|everything|them all|them both|all)"
 )
+_PAIRS = re.compile(r"\b(two|three|four|five|\d{1,2}|both) pairs of ")
+_OF_THEM = re.compile(r"(two|three|four|five|six|seven|eight|nine|ten|\d{1,2}) of (?:them|these|those)")
 _ANOTHER = re.compile(r"(?:another|another one|the other|the other one|a second one|one more|a different one)")
 _PLACE = re.compile(
     r" (?:,? ?(?:that|which)(?: is| are|'s| was| were| you find| i left| you can find| lies| stands| sits)? "
     r"|lying |standing "
     r"|sitting |hanging |located |found |kept |stored )?"
-    r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|from inside|behind"
+    r"(in|inside|on|on top of|from|off|off of|out of|at|by|near|next to|beside|over in|up in|out in|from inside|behind"
     r"|under|above|for|belonging to|over|in front of|close to) (?=\S)"
 )
 _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besides|but(?= the one)) (?=\S)")
@@ -62,6 +64,7 @@ _RELATIVE = re.compile(
     r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house"
     r"|home|flat))$"
 )
+_OWN_PART = re.compile(r"(.+)'s ([a-z]+)")
 _PART_OF = re.compile(r"(.+?) of (?:the|my|your|our|this|that) (.+)")
 _EMPTY_WORDS = (
     "dirty",
@@ -124,6 +127,7 @@ def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Me
     """
     text = text.strip(" ,")
     text = text.removeprefix("both ") if " and " in text else text
+    text = text.removeprefix("either ") if " or " in text else text
     if len(text.split()) > _LONGEST * 3:
         return ()
     if (whole := mention_of(known, text)) is not None:
@@ -149,11 +153,11 @@ def mentions_in(known: Knowledge, text: str, is_inner: bool = False) -> tuple[Me
 @lru_cache(maxsize=65_536)
 def mention_of(known: Knowledge, text: str) -> Mention | None:
     """Return the things of one noun phrase; None where it is not understood."""
-    text = _RELATIVE.sub("", text.strip(" ,"))
+    text = _PAIRS.sub(r"\1 ", _RELATIVE.sub("", text.strip(" ,")))
     if not text or len(text.split()) > _LONGEST * 2:
         return None
-    if _ANOTHER.fullmatch(text):
-        return Mention(text, back=True, another=True)
+    if (back := _referring(text)) is not None:
+        return back
     if text.startswith("everything"):
         text = f"all devices{text.removeprefix('everything')}"
     if _PRONOUN.fullmatch(text):
@@ -174,11 +178,27 @@ def mention_of(known: Knowledge, text: str) -> Mention | None:
         if count == 1 and text.startswith(_PAIR) and not known.has(classes[0], "CLOTHES"):
             count = 2
         return Mention(text, classes, _number(known, rest, classes, count), is_group=_is_group(rest))
-    if (part := _PART_OF.fullmatch(rest)) and part[1].rpartition(" ")[2] in _PARTS:
-        return mention_of(known, part[2])
+    if (whole := _whole_of(text, rest)) is not None:
+        return mention_of(known, whole)
     if (part := _PART_OF.fullmatch(rest)) and (classes := _classes(known, part[1])) and _classes(known, part[2]):
         return Mention(text, classes, _number(known, part[1], classes, count), is_group=_is_group(part[1]))
     return _in_room(known, text, rest, count) or _part(known, text, rest, count) or _plain(known, text)
+
+
+def _whole_of(text: str, rest: str) -> str | None:
+    """Return the furniture of which words name a part: `the lid of the toilet`, `the toilet's lid`."""
+    if (own := _OWN_PART.fullmatch(text)) and own[2] in _PARTS:
+        return own[1]
+    part = _PART_OF.fullmatch(rest)
+    return part[2] if part and part[1].rpartition(" ")[2] in _PARTS else None
+
+
+def _referring(text: str) -> Mention | None:
+    """Return the things of words before that words with a number, or for another of them, stand for."""
+    if _ANOTHER.fullmatch(text):
+        return Mention(text, back=True, another=True)
+    found = _OF_THEM.fullmatch(text)
+    return Mention(text, count=number_in(found[1]), back=True) if found else None
 
 
 def _counted(text: str) -> tuple[str, int | None]:
@@ -267,7 +287,25 @@ def _placed(known: Knowledge, text: str, rest: str, count: int | None) -> Mentio
 
 
 _PAIR = ("a pair of", "the pair of")
-_PARTS = frozenset({"drawer", "drawers", "door", "doors", "lid", "plug", "switch", "screen", "knob"})
+_PARTS = frozenset(
+    {
+        "inside",
+        "outside",
+        "interior",
+        "top",
+        "surface",
+        "front",
+        "drawer",
+        "drawers",
+        "door",
+        "doors",
+        "lid",
+        "plug",
+        "switch",
+        "screen",
+        "knob",
+    }
+)
 
 
 def _part(known: Knowledge, text: str, rest: str, count: int | None) -> Mention | None:

@@ -66,7 +66,9 @@ def write_program(reading: Reading, world: World, rules: Rules) -> Written:
 
     Should the whole not run as its parts did, it is planned as a whole.
     """
-    acts = _wanted(_fetched_first([act for act in reading.acts if not is_forbidden(act, reading.forbidden)]))
+    acts = _wanted(
+        _seated_last(_fetched_first([act for act in reading.acts if not is_forbidden(act, reading.forbidden)]))
+    )
     planned = _planned(acts, world, rules)
     execution = run(world, Program(steps=planned.steps), rules)
     if execution.failure is not None:
@@ -160,6 +162,17 @@ def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
         thing = uses.objects[:1]
         if not any(_nodes(each.objects)[:1] == _nodes(thing) for each in acts[: acts.index(uses)]):
             found.insert(found.index(act), Act(GRABS, thing, uses.words))
+    return found
+
+
+def _seated_last(acts: Sequence[Act]) -> Sequence[Act]:
+    """Return acts in which the agent switches a screen on before it sits down to watch."""
+    found = list(acts)
+    for at in range(len(found) - 2):
+        seat, switch, watch = found[at : at + 3]
+        is_one = switch.words == watch.words and watch.action in acts_of("watched") and switch.objects == watch.objects
+        if seat.action in acts_of("seats") and is_one and switch.action in acts_of("switched"):
+            found[at : at + 2] = [switch, seat]
     return found
 
 

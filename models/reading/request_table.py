@@ -95,6 +95,10 @@ def is_slot(name: str) -> bool:
     return len(name) == 1
 
 
+_NOT_WITHOUT_YOURSELF = frozenset({"get yourself", "put yourself", "take yourself", "seat yourself", "place yourself"})
+"""Verbs that mean something else without `yourself`, which is left out elsewhere as a word of courtesy."""
+
+
 @cache
 def requests() -> tuple[Request, ...]:
     """Return the table, in its order."""
@@ -113,7 +117,7 @@ def _request(row: Mapping[str, Any], groups: Mapping[str, str]) -> Request:
 
 
 def _alternatives(words: list[str]) -> str:
-    plain = [each.replace(" yourself", "") for each in words]  # a word of courtesy, which is left out
+    plain = [each.replace(" yourself", "") for each in words if each not in _NOT_WITHOUT_YOURSELF]
     ordered = sorted({*words, *plain}, key=lambda each: (-len(each), each))
     return f"(?:{'|'.join(map(re.escape, ordered))})"
 
@@ -167,6 +171,12 @@ def words() -> Words:
         {name: tuple(classes) for kind in ("things", "groups") for name, classes in data[kind].items()},
         frozenset(data["groups"]),
     )
+
+
+@cache
+def hints() -> tuple[tuple[re.Pattern[str], str], ...]:
+    """Return wishes that are only hinted at, each with the request that it stands for (a template of its groups)."""
+    return tuple((re.compile(pattern), str(request)) for pattern, request in _word_data()["hints"].items())
 
 
 @cache

@@ -49,7 +49,10 @@ _CAUSED = re.compile(
     r"^(?:have|get|see|want|need|i want|i need|i would like|i would love|see that|make sure|let|keep|leave) "
 )
 _UNCHANGED = frozenset({"cut", "put", "set", "shut", "hung", "read"})
-_GIVEN = re.compile(r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)")
+_GIVEN = re.compile(
+    r"(?:give|do) (?P<np>.+?) (?:a|an|another|some) (?:[a-z]+ ){0,3}(?P<verb>[a-z]+)(?: first| too| then"
+    r"| now| as well)?"
+)
 _NEEDS_ONE = re.compile(
     r"(?P<np>.+?) (?:needs?|could do with|could use|wants?|deserves?|is due|calls for|requires?) (?:a|another|some) "
     r"(?:[a-z]+ ){0,3}(?P<verb>[a-z]+)"
@@ -57,7 +60,7 @@ _NEEDS_ONE = re.compile(
 _LIGHT = re.compile(
     r"(?:have|take|do|make|enjoy|get in|spend|go for) (?:a|an|another) (?:good |quick |proper |nice |little "
     r"|long |short "
-    r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> .+)?"
+    r"|bit of |brief |small |time |while )*(?P<verb>[a-z]+)(?P<rest> (?!and )(?:(?! and ).)+)?"
 )
 _SPENT = re.compile(
     r"spend (?:some |a |the |your )?(?:[a-z]+ )*?(?P<verb>(?!evening|morning)[a-z]+ing)\b(?P<rest> .+)?"
@@ -72,7 +75,7 @@ _SPENT_IN = re.compile(
 )
 _TOOL_FIRST = re.compile(
     r"(?:use|using|with|(?:take|get|grab)(?=.+ to )) (?P<np>.+?)(?: to|,)(?: (?:i|you|we|she|he))?"
-    r" (?P<clause>[a-z]+(?: .+)?)"
+    r" (?P<clause>(?!and\b|but\b|then\b)[a-z]+(?: .+)?)"
 )
 _TOOL_LAST = re.compile(r"(?P<clause>.+?) (?:with|using|by using|by means of) (?P<np>.+)")
 _TOOL_ON = re.compile(r"use (?P<np>.+?) on (?P<what>.+)")
@@ -109,6 +112,12 @@ _AFTER_FIRST = re.compile(
     r"| already)* )?(?P<first>.+?), "
     r"(?:then |only then )?(?P<main>.+)"
 )
+_WITHOUT = re.compile(
+    r"(?:do not|don't|never) (?P<main>(?!use\b|touch\b).+?),? without (?:having |first )?(?P<first>.+)"
+)
+_DONE_TO = re.compile(
+    r"(?P<np>.+?) (?:is|are|has been|have been)(?: all| both| properly| neatly)? (?P<verb>[a-z]+(?:ed|en|t))"
+)
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
@@ -117,8 +126,7 @@ _WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")
 _ROOM_FIRST = re.compile(
-    r"(?P<clause>.+?) in(?:to)? (?P<room>the (?:kitchen|bedroom|bathroom|hallway|office|study|[a-z]+ room"
-    r"|[a-z]+ bedroom)),? "
+    r"(?P<clause>.+?) (?P<near>in(?:to)?|by|near|next to|beside) (?P<room>(?:the|my|your) [a-z]+(?: [a-z]+)?),? "
     r"(?P<to>on|in|onto|into|on top of|inside|next to) (?P<place>.+)"
 )
 _PREPOSITION = re.compile(
@@ -132,6 +140,18 @@ _FRONTED = re.compile(
 _PLACE_FIRST = re.compile(
     r"(?P<place>(?:on|in|into|onto) .+?),? (?:i (?:want|need|would like|put)|we (?:want|need|put)"
     r"|there should be|you put|put|place) (?P<np>.+)"
+)
+_FROM_FIRST = re.compile(
+    r"(?:from|off|out of) (?P<place>.+?),? (?P<verb>take|get|grab|fetch|bring|pick up|remove|collect) (?P<np>.+)"
+)
+_NONE = re.compile(
+    r"no (?P<np>.+?) (?:should|must|may|can|is to|are to|ought to) (?:be|stay|remain|be left) "
+    r"(?P<state>on|open|running)(?P<rest> in .+)?"
+)
+_GO_IN = re.compile(r"(?P<to>in|into|on|onto) (?P<place>.+?) (?:go|goes|with) (?P<np>.+)")
+_TO_DO = re.compile(r"(?P<np>.+?) to (?P<verb>wash|clean|fold|put away|tidy|rinse|cut|chop|eat|read|dry|cook)")
+_FORGOTTEN = re.compile(
+    r"(?:you|we|i|somebody|someone)(?: have|'ve)? (?:forgot|forgotten|still have|still need) to (?P<clause>.+)"
 )
 _SITTING = re.compile(r"(?P<clause>.+?),? while (?:you are |you're )?(?:sitting|seated)(?: down)?")
 _COULD_GO = re.compile(
@@ -162,6 +182,7 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
         _THE_FIRST,
         _UNTIL,
         _NOT_UNTIL,
+        _WITHOUT,
         _AFTER_FIRST,
         _BEFORE_FIRST,
         _AFTER,
@@ -174,9 +195,20 @@ def orders(text: str) -> Iterator[tuple[str, str]]:
     ):
         if found := pattern.fullmatch(text):
             first, main = (found[part].strip(" ,") for part in ("first", "main"))
+            if pattern is _WITHOUT:
+                yield f"put on {first}", main  # `don't go out without a hat`
             yield first, main
             if (done := _HAVING.sub("", first)) != first:
                 yield done, main
+
+
+def done_first(known: Knowledge, text: str) -> str:
+    """Return `fold the blanket` of `the blanket is folded`, which is to be so before something else; "" for others."""
+    found = _DONE_TO.fullmatch(text)
+    if not found or not _is_thing(known, found["np"]):
+        return ""
+    lemmas = [lemma for lemma in verb_lemmas(found["verb"]) if lemma != found["verb"]]
+    return f"{lemmas[0]} {found['np']}" if lemmas else ""
 
 
 def _passive(known: Knowledge, text: str) -> Iterator[Clauses]:
@@ -284,7 +316,15 @@ def _room_last(known: Knowledge, text: str) -> Iterator[Clauses]:
     if found := _STATE_IN.fullmatch(text):
         yield (f"{found['np']} in {found['room']} {found['state']}",)
     if (found := _ROOM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
-        yield (f"{found['clause']} {found['to']} {found['place']} in {found['room']}",)
+        near = "in" if found["near"] == "into" else found["near"]
+        yield (f"{found['clause']} {found['to']} {found['place']} {near} {found['room']}",)
+
+
+def _none_so(known: Knowledge, text: str) -> Iterator[Clauses]:
+    """Yield `turn off all lights in the hall` of `no lights should be on in the hall`."""
+    if (found := _NONE.fullmatch(text)) and _is_thing(known, found["np"]):
+        verb = "close" if found["state"] == "open" else "turn off"
+        yield (f"{verb} all {found['np']}{found['rest'] or ''}",)
 
 
 def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
@@ -294,6 +334,14 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
             yield (f"{lemma} {found['np']}{found['rest'] or ''}",)
     if found := _PLACE_FIRST.fullmatch(text):
         yield (f"put {found['np']} {found['place']}",)
+    if (found := _FROM_FIRST.fullmatch(text)) and _is_thing(known, found["place"]):
+        yield (f"{found['verb']} {found['np']} from {found['place']}",)
+    if (found := _GO_IN.fullmatch(text)) and _is_thing(known, found["place"]):
+        yield (f"put {found['np']} {found['to']} {found['place']}",)
+    if (found := _TO_DO.fullmatch(text)) and _is_thing(known, found["np"]):
+        yield (f"{found['verb']} {found['np']}",)
+    if found := _FORGOTTEN.fullmatch(text):
+        yield (found["clause"],)
     if found := _SITTING.fullmatch(text):
         yield ("sit down", found["clause"])
     if (found := _COULD_GO.fullmatch(text)) and _is_thing(known, found["np"]):
@@ -301,7 +349,7 @@ def _fronted(known: Knowledge, text: str) -> Iterator[Clauses]:
 
 
 _WAYS: tuple[Callable[[Knowledge, str], Iterator[Clauses]], ...] = (
-    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object,
+    _passive, _fronted, _participle, _tool, _light, _two, _room_last, _with_state, _without_object, _none_so,
 )  # fmt: skip
 
 

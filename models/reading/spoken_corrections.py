@@ -7,7 +7,7 @@ import re
 from hearth.kb.language.english_lexicon import is_noun, is_verb
 
 _CORRECTION = re.compile(
-    r"(?P<first>.+?)\s*(?:\.\.+|\u2026|[,;.!]| - | \u2013 | \u2014 )\s*(?:oh |uh |um |well,? |hm+,? |sorry,? |no,? )*"
+    r"(?P<first>.+?)\s*(?:\.\.+|\u2026|[,;.!?]| - | \u2013 | \u2014 )\s*(?:oh |uh |um |well,? |hm+,? |sorry,? |no,? )*"
     r"(?:actually|no,? wait|wait,? no|wait|sorry|i mean(?:t)?|make (?:that|it)|or rather|scratch that"
     r"|strike that|on second thoughts?|no(?=,))[,:.]*(?:\s+(?:no|i mean|make (?:that|it)|not"
     r" that))*[,:.]*\s+(?P<then>.+)",

@@ -54,12 +54,14 @@ class Clause(NamedTuple):
         goals: what is to hold at the end besides.
         spoken: its things, the last first.
         forbidden: acts that are not to be done.
+        named: the words of a clause that only names things, as telegrams do; "" of others.
     """
 
     acts: tuple[Act, ...] = ()
     goals: tuple[Literal[Name], ...] = ()
     spoken: tuple[Spoken, ...] = ()
     forbidden: tuple[Act, ...] = ()
+    named: str = ""
 
 
 def together(bound: Sequence[tuple[ActTemplate, list[Refs]]]) -> Iterator[list[tuple[ActTemplate, list[Refs]]]]:

@@ -27,6 +27,10 @@ _NEVER = frozenset(
 )
 
 
+_COOKED_ON = frozenset({"stove"})
+"""Containers on which things are put, as a pot is on a stove that is one with its oven."""
+
+
 def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
     """Return the act by which a thing is put away, and its place; no act where the home has no place for it.
 
@@ -46,6 +50,8 @@ def usual_place(scene: Scene, thing: ObjectRef) -> tuple[str, Refs]:
 
 def usual_way(known: Knowledge, thing: ObjectRef, place: ObjectRef) -> str:
     """Return the act by which a thing is put in or on a place, as is usual for it there."""
+    if place.name in _COOKED_ON:
+        return "PutBack"
     is_in, is_on = (
         known.has(place.name, "CONTAINERS") or known.has(place.name, "RECIPIENT"),
         known.has(place.name, "SURFACES"),

@@ -57,6 +57,20 @@ def test_requests_of_a_second_author_are_read(knowledge):
     assert [text for each, text in found if each == "wrong"] == []
 
 
+def test_requests_by_the_author_of_the_reader_are_read(knowledge):
+    """At first sight 47 of these 82 were read."""
+    found = [(outcome(goal, text, knowledge), text) for goal, text in pairs("requests_of_a_third_author.txt")]
+    assert len(found) == 82 and sum(each == "right" for each, _ in found) >= 69
+    assert [text for each, text in found if each == "wrong"] == []
+
+
+def test_requests_of_a_fourth_author_are_read(knowledge):
+    """At first sight 30 of these 96 were read; two goals, of a stove and of a glass of water, say something else."""
+    found = [(outcome(goal, text, knowledge), text) for goal, text in pairs("requests_of_a_fourth_author.txt")]
+    assert len(found) == 96 and sum(each == "right" for each, _ in found) >= 64
+    assert [text.split()[0] for each, text in found if each == "wrong"] == ["Stick", "Apple"]
+
+
 @pytest.mark.parametrize(
     "text",
     [
