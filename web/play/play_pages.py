@@ -8,6 +8,7 @@ from typing import Any
 from starlette.responses import Response
 
 from hearth.challenges.challenge_definition import NAMES, challenge
+from hearth.challenges.episode_agents import NOBODY
 from hearth.challenges.household import household_task
 from hearth.challenges.household_as_challenge import as_task
 from hearth.challenges.household_definition import NAME as HOUSEHOLD
@@ -25,7 +26,7 @@ from hearth.web.play.game_results import as_bytes, results
 from hearth.web.play.game_store import Stored
 from hearth.web.play.games import Game
 from hearth.web.play.live_games import PATIENCE, games
-from hearth.web.play.play_trials import INTERFACES, NOBODY, PERSON, Trial, drawable, offered, published, trial
+from hearth.web.play.play_trials import INTERFACES, PERSON, Trial, drawable, offered, published, trial
 from hearth.web.room_request import Visit, by_browser
 from hearth.web.third_party_scripts import missing
 from hearth.web.web_errors import WebError
