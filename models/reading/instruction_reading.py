@@ -79,6 +79,7 @@ _SWITCHED = re.compile(r"(?:turn|switch) (?!on |off ).+ (on|off)")
 
 _MY_PLAN = re.compile(
     r"(?:i|we)(?:'ll| will| am going to| are going to|'m going to|'re going to|'m about to|'re about to) "
+    r"|let's (?:eat|go|start|begin|get going|get started)$"
 )
 _NOT_WITHOUT = re.compile(r"(?:do not|don't|never) .+ (?:without|until|before) ")
 

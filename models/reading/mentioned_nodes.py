@@ -8,7 +8,7 @@ from functools import lru_cache
 from hearth.kb.knowledge import Knowledge
 from hearth.models.reading.mentions import EVERY, SEVERAL, Mention
 from hearth.schemas.program import ObjectRef
-from hearth.schemas.vocabulary import OPPOSITE, STATE_ID
+from hearth.schemas.vocabulary import EVERY_STATE_ID, OPPOSITE, STATE_ID
 from hearth.simulation.world import edge_rows
 from hearth.simulation.world.bits import indices, mask_of
 from hearth.simulation.world.world import World
@@ -43,6 +43,9 @@ def fits(known: Knowledge, name: str, needs: frozenset[str]) -> bool:
 
 def _is_room(known: Knowledge, name: str, needs: Collection[str]) -> bool:
     return "room" in needs and known.is_room(name)
+
+
+_GONE = EVERY_STATE_ID["GONE"]
 
 
 class Scene:
@@ -122,8 +125,14 @@ class Scene:
     def _named(self, name: str) -> list[int]:
         """Return the nodes of a class; those that a home has in its place only where it has none of its own."""
         assert self.world is not None
-        every = list(indices(self.world.home.instances(name)))
+        every = list(indices(self.world.home.instances(name) & ~self._absent()))
         return [i for i in every if self.world.home.classes[i] == name] or every
+
+    def _absent(self) -> int:
+        """Return the things that are in no room: used up, or parts that come about by cutting."""
+        assert self.world is not None
+        states = self.world.states
+        return self.world.home.absent | (states[_GONE] if len(states) > _GONE else 0)
 
     def others(self, refs: Refs, taken: Collection[int]) -> Refs:
         """Return another thing of the class of some things, none of those that are taken."""

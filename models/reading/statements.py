@@ -41,7 +41,8 @@ _WANTS = re.compile(
     r"|stays?|remains?|forbidden|may not|going to need|gets?|better|allowed)\b"
 )
 _IS_SO = re.compile(
-    r"(?:[a-z]+ ){0,2}[a-z]+'s (?:(?:[a-z]+ly|so|too|very|really|all|still|not|getting|been) )*(?P<how>[a-z]+)"
+    r"(?:[a-z]+ ){0,2}[a-z]+'s (?:(?:[a-z]+ly|so|too|very|really|all|still|not|getting|been) )*"
+    r"(?P<how>[a-z]+)(?: (?:over|out|off|up|down|again|now|here))?"
 )
 _ALLOWS = re.compile(r"you (?:can|may|could)(?: now| then)? [a-z]+")
 _FINITE = re.compile(
