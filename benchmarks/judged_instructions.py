@@ -24,6 +24,7 @@ FILES = (
     "requests_of_a_second_author.txt",
     "requests_of_a_third_author.txt",
     "requests_of_a_fourth_author.txt",
+    "requests_of_a_fifth_author.txt",
 )
 OF_WAH = ("dinnertable", "coffeetable", "wineglass", "INSIDE(apple")
 

@@ -28,9 +28,11 @@ _PIECES = re.compile(
 )
 _LEADING = re.compile(r"^(?:(?:and|but|so|oh|right|well|ok|okay|please|now|then|also),? )+")
 _CHATS = re.compile(
-    r"(?:when|whenever|while|before|after|once|until|till|if|because|since|as|so that|where|which|who|let's|time for"
+    r"(?:i want to show|i want the kids"
+    r"|when|whenever|while|before|after|once|until|till|if|because|since|as|so that|where|which|who|let's|time for"
     r"|for the|don't ask|just|right|it's|i'll|we'll|we won't|i've|we've|i'm|we're|there'll|thanks|thank you)\b"
 )
+_FOR_WHOM = re.compile(r" for (?!one\b|two\b|three\b|four\b|each\b)[a-z]+(?=,| and |[.!?]|$)")
 _PAIRS = re.compile(r"\b(two|three|four) pairs of ")
 _TAILS = re.compile(
     r",? (?:till|until|where|because|since|so (?:that )?(?:i|we|you|they|he|she|it|it's)|i want to|for our|there are) "
@@ -116,6 +118,7 @@ def without_reasons(text: str, known: Known, rooms: frozenset[str] = frozenset()
     text = _STATED.sub(r"\1 ", _PAIRS.sub(r"\1 ", _BOTH.sub("", _REASONS.sub("", text))))
     text = _TAILS.sub(lambda tail: tail[0] if _names_things(tail[0], known, rooms) else "", text)
     pieces = _PIECES.split(text)
+    text = _FOR_WHOM.sub(lambda found: found[0] if _names_things(found[0], known, rooms) else "", text)
     kept = ""
     for piece, joint in zip(pieces[::2], [*pieces[1::2], ""], strict=True):
         plain = _LEADING.sub("", piece.strip())

@@ -40,7 +40,7 @@ _DONE_WITH = re.compile(
 )
 _MAY_I = re.compile(
     r"^(?:please )?(?:can|could|may|might) (?:i|we) (?:please )?have (?!to\b|a (?:look|seat|go|try"
-    r"|word)\b|.+ (?:on|in) )"
+    r"|word)\b|.+ (?:on|in) |.*\b(?:music|light|quiet|fun|lunch|dinner|breakfast))"
 )
 _FOR_ME = re.compile(r"^((?:please )?(?:put|set|lay|stick|leave|place)) me ")
 _COUNTED = re.compile(r"^(.+?),? (?:please,? )?(two|three|four|five|six|both|all)(?: of (?:them|those)| pairs)(, .+)?$")

@@ -47,7 +47,9 @@ _SPILLED = re.compile(
     r"^.+? (?:spilled|spilt|dropped|knocked over|smeared|splashed|dribbled) .+? "
     r"(?:all over|on to|onto|on|over) (.+)$"
 )
-_FIRST_WORDS = re.compile(r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so),? )+")
+_FIRST_WORDS = re.compile(
+    r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so|i would like|i want|i need|i could use|give me),? )+"
+)
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _NEGATION = re.compile(
     r"(?:no(?= [a-z]+ing\b)|do not|don't|dont|never|not|without|avoid|refrain from|no need to|there is no need to"

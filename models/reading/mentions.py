@@ -59,8 +59,8 @@ _EXCEPT = re.compile(r",? (?:except(?: for)?|but not|apart from|other than|besid
 _ALL_BEHIND = re.compile(r" (?:all|both|each)$")
 _LISTED = re.compile(r",? (?:and|or|as well as|along with|together with|plus|&)(?: also)? |, ")
 _RELATIVE = re.compile(
-    r" (?:(?:that|which|who) (?!is |are |was |were |lies |stands |sits )[a-z']+.*|(?:that |which )?(?:you|i"
-    r"|we) (?:can|could|have|own|see|find"
+    r"(?<!something)(?<!anything) (?:(?:that|which|who) (?!is |are |was |were |lies |stands |sits )[a-z']+.*"
+    r"|(?:that |which )?(?:you|i|we) (?:can|could|have|own|see|find"
     r"|like|left|bought|want|need|got)\b.*|(?:lying|standing|sitting) (?:around|about)|in sight|in the (?:house"
     r"|home|flat))$"
 )

@@ -167,7 +167,7 @@ def _fetched_first(acts: Sequence[Act]) -> Sequence[Act]:
 
 def _seated_last(acts: Sequence[Act]) -> Sequence[Act]:
     """Return acts in which the agent switches a screen on before it sits down to watch."""
-    found = list(acts)
+    found = [act for at, act in enumerate(acts) if not at or not _is_same(acts[at - 1], act) or act.action == WAITS]
     for at in range(len(found) - 2):
         seat, switch, watch = found[at : at + 3]
         is_one = switch.words == watch.words and watch.action in acts_of("watched") and switch.objects == watch.objects

@@ -44,6 +44,7 @@ _IS_SO = re.compile(
     r"(?:[a-z]+ ){0,2}[a-z]+'s (?:(?:[a-z]+ly|so|too|very|really|all|still|not|getting|been) )*"
     r"(?P<how>[a-z]+)(?: (?:over|out|off|up|down|again|now|here))?"
 )
+_IS_AT = re.compile(r"(?:the |my )?[a-z]+(?:'s| is) (?:all )?(?:in|on|at|over|under) (?:my|your|the|our) .+")
 _ALLOWS = re.compile(r"you (?:can|may|could)(?: now| then)? [a-z]+")
 _FINITE = re.compile(
     r"(?:the|my|our|your|his|her|its|their|that"
@@ -65,8 +66,10 @@ def is_statement(text: str) -> bool:
         return False
     if _ASKS_WHAT.fullmatch(text) or _TELLS.fullmatch(text):
         return True
+    if _IS_AT.fullmatch(text):
+        return True
     said = _IS_SO.fullmatch(text)
-    if said and {"ADJ", "VERB"} & set(lemmas(said["how"])):
+    if said and {"ADJ", "VERB", "ADV"} & set(lemmas(said["how"])):
         return True
     found = _FINITE.fullmatch(text)
     return bool(found) and _is_finite(found["verb"] if found else "")

@@ -71,6 +71,13 @@ def test_requests_of_a_fourth_author_are_read(knowledge):
     assert [text.split()[0] for each, text in found if each == "wrong"] == ["Stick", "Apple"]
 
 
+def test_requests_of_a_fifth_author_are_read(knowledge):
+    """At first sight 34 of these 48 were read; a glass of water is water to us, and a glass in two goals."""
+    found = [(outcome(goal, text, knowledge), text) for goal, text in pairs("requests_of_a_fifth_author.txt")]
+    assert len(found) == 48 and sum(each == "right" for each, _ in found) >= 41
+    assert all("glass of water" in text for each, text in found if each == "wrong")
+
+
 @pytest.mark.parametrize(
     "text",
     [
