@@ -48,7 +48,8 @@ _SPILLED = re.compile(
     r"(?:all over|on to|onto|on|over) (.+)$"
 )
 _FIRST_WORDS = re.compile(
-    r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so|i would like|i want|i need|i could use|give me),? )+"
+    r"^(?:(?:first|then|and|next|finally|now|please|off to|over to|so"
+    r"|i would like|i want|i need|i could use|give me),? )+"
 )
 _PLACE_IN_ORDER = re.compile(r" (?:first|second|third|next|last|quick|now)$")
 _NEGATION = re.compile(
