@@ -176,11 +176,11 @@ def entry_of(entity: Entity, class_name: str, shape: Shape, units: Units) -> Ent
         found = replace(found, place=point, is_flat=place.is_flat)
     if size is not None:
         extents = _times(vectors.upright_size(size.extents, units.up), units.scale)
-        found = replace(found, size=_turned(extents, yaw, turns=size.turns))
+        found = replace(found, size=turned_size(extents, yaw, turns=size.turns))
     return replace(found, yaw=yaw)
 
 
-def _turned(size: Vector, yaw: float | None, *, turns: bool) -> Vector:
+def turned_size(size: Vector, yaw: float | None, *, turns: bool) -> Vector:
     """Return the extents along x, y and z of a thing that faces `yaw`, at the nearest right angle."""
     if yaw is None or not turns:
         return size

@@ -9,9 +9,9 @@ from typing import Any
 from hearth.homes.node_defaults import filled
 from hearth.homes.object_shapes import form
 from hearth.interop.scene_graphs import completion, hydra, omnigibson, urdf_scenes
-from hearth.interop.scene_graphs.class_names import ClassOf, class_of
+from hearth.interop.scene_graphs.class_names import ClassOf, class_of, is_number_only
 from hearth.interop.scene_graphs.entities import Entity, entities_of, values_of
-from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, units_of, unknown_states
+from hearth.interop.scene_graphs.entries import Entry, Units, entry_of, turned_size, units_of, unknown_states
 from hearth.interop.scene_graphs.fillings import CLASSES_BY, ReadGraph
 from hearth.interop.scene_graphs.foot_places import raised_from_feet
 from hearth.interop.scene_graphs.geometry_faults import geometry_faults
@@ -25,7 +25,7 @@ from hearth.interop.scene_graphs.units_of_length import unit_word
 from hearth.interop.scene_graphs.vectors import Vector
 from hearth.kb.knowledge import Knowledge
 from hearth.kb.spelling import key_of
-from hearth.schemas.diagnostics import HearthError
+from hearth.schemas.diagnostics import Diagnostic, HearthError
 from hearth.schemas.failures import Code
 from hearth.schemas.graph import Box, Edge, EnvironmentGraph, Node, from_release
 from hearth.schemas.numbers import FARTHEST, LONGEST_HOME
@@ -36,6 +36,9 @@ LOWEST_ROOM = 1.0
 
 MOST_ENTRIES = 20_000
 """Things and rooms of a file that are read."""
+
+MOST_SHOWN = 20
+"""Faults that are named where nothing of a file was understood; the others are counted."""
 
 
 def read_scene(data: Any, shape: Shape, knowledge: Knowledge, file: str = "") -> ReadGraph:
@@ -107,7 +110,7 @@ class _Reading(GraphCompletion):
             for message, remedy in geometry_faults(entity, self.shape):
                 self._leave(Code.BAD_GRAPH, message, entity.path, remedy)
         if not kept:
-            raise HearthError(self.left_out[:20])
+            raise HearthError(self._first_left_out())
         names = [classes[id(entity)].name for entity in kept]
         shapes = [None if self.knowledge.is_room(name) else form(name, self.knowledge) for name in names]
         units = units_of(kept, shapes, self.shape, self.unit_word)
@@ -135,6 +138,12 @@ class _Reading(GraphCompletion):
         ids = {numbers[id(entry)]: entry.entity.keys[0] for entry in entries if entry.entity.keys}
         return ReadGraph(graph, self.counted(), tuple(self.left_out), ids)
 
+    def _first_left_out(self) -> list[Diagnostic]:
+        """Return the first entries that were left out, and the number of the others."""
+        more = len(self.left_out) - MOST_SHOWN
+        rest = [Diagnostic(Code.BAD_GRAPH, f"and {more:,} more such faults", self.file)] if more > 0 else []
+        return [*self.left_out[:MOST_SHOWN], *rest]
+
     def _floors(self, entities: Sequence[Entity], units: Units) -> list[Box]:
         """Return the boxes of the floors that a file has."""
         found = (entry_of(each, "floor", self.shape, units) for each in entities if key_of(each.label) == "floor")
@@ -148,9 +157,12 @@ class _Reading(GraphCompletion):
             ways.setdefault(found.by, []).append(f"{entity.label} = {found.name}" if found.name else entity.label)
             if not found.by:
                 near = self.knowledge.suggest(entity.label)
+                called = f"`{entity.label}`"
+                if is_number_only(entity.label) and not is_number_only(entity.name):
+                    called = f"`{entity.name}`, whose number is {entity.label}"
                 hint = f"did you mean `{near[0]}`? " if near else ""
                 hint += "`classes:` of a mapping file names the class, or null to leave it out without a word"
-                self._leave(Code.UNKNOWN_OBJECT, f"no class is called `{entity.label}`", entity.path, hint)
+                self._leave(Code.UNKNOWN_OBJECT, f"no class is called {called}", entity.path, hint)
         for by, what in CLASSES_BY.items():
             self.note(what, ways.get(by, []))
 
@@ -250,7 +262,8 @@ class _Reading(GraphCompletion):
             node["states"] = states
         is_room = self.knowledge.is_room(entry.class_name)
         shaped = None if is_room else form(entry.class_name, self.knowledge)
-        size = entry.size if entry.size is not None and min(entry.size) > 0 else shaped and shaped.size
+        own = entry.size if entry.size is not None and min(entry.size) > 0 else None
+        size = own or (shaped and turned_size(shaped.size, entry.yaw, turns=True))
         place = entry.place
         if is_room and place is not None and entry.size is not None and _is_outline(entry.size):
             low = place[1] + entry.size[1] / 2

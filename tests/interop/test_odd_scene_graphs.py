@@ -141,3 +141,27 @@ def test_a_second_holder_is_counted_and_no_circle():
                   {"id": "f", "label": "fridge"}])  # fmt: skip
     [note] = [note for note in found.fillings if note.what.startswith("second holders")]
     assert note.number == 1 and found.left_out == ()
+
+
+def test_a_size_of_the_knowledge_turns_with_its_thing():
+    """A bookshelf of the knowledge is wider than deep; a quarter turn puts its width across."""
+    sizes = []
+    for angle in (0, 90, 180):
+        turn = {"label": "bookshelf", "position": [0, 0, 1], "yaw": angle}
+        [node] = [each for each in read([turn, {"label": "bed", "position": [3, 0, 0.3]}]).graph.nodes
+                  if each.class_name == "bookshelf"]  # fmt: skip
+        sizes.append((node.box.size, node.yaw))
+    (w, h, d), _ = sizes[0]
+    assert w != d and [size for size, _ in sizes] == [(w, h, d), (d, h, w), (w, h, d)]
+
+
+def test_a_file_of_which_nothing_is_known_says_how_many_faults_are_not_shown():
+    with pytest.raises(HearthError) as failed:
+        read([{"label": f"grommetoid{'x' * number}"} for number in range(1, 33)])
+    assert len(failed.value.diagnostics) == 21 and "and 12 more" in failed.value.diagnostics[-1].message
+
+
+def test_an_entry_with_a_number_and_a_name_is_called_by_its_name():
+    named = {"attributes": {"type": "ObjectNodeAttributes", "name": "unknown", "semantic_label": 25}}
+    [fault] = read({"nodes": [{"attributes": {"name": "fridge"}}, named]}).left_out
+    assert "`unknown`" in fault.message and "25" in fault.message
