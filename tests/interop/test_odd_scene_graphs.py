@@ -155,12 +155,6 @@ def test_a_size_of_the_knowledge_turns_with_its_thing():
     assert w != d and [size for size, _ in sizes] == [(w, h, d), (d, h, w), (w, h, d)]
 
 
-def test_a_file_of_which_nothing_is_known_says_how_many_faults_are_not_shown():
-    with pytest.raises(HearthError) as failed:
-        read([{"label": f"grommetoid{'x' * number}"} for number in range(1, 33)])
-    assert len(failed.value.diagnostics) == 21 and "and 12 more" in failed.value.diagnostics[-1].message
-
-
 def test_an_entry_with_a_number_and_a_name_is_called_by_its_name():
     named = {"attributes": {"type": "ObjectNodeAttributes", "name": "unknown", "semantic_label": 25}}
     [fault] = read({"nodes": [{"attributes": {"name": "fridge"}}, named]}).left_out

@@ -250,10 +250,10 @@ def test_any_name_of_a_class_will_do_in_a_mapping(tmp_path):
     assert classes(found) == ["bed", "television"] and found.left_out == ()
 
 
-def test_a_file_of_unknown_things_alone_names_them():
+def test_a_file_of_unknown_things_alone_names_twenty_and_counts_the_others():
     with pytest.raises(HearthError) as raised:
         read([{"label": f"gizmo {letter}"} for letter in "abcdefghijklmnopqrstuvwxyz"])
-    assert len(raised.value.diagnostics) == 20
+    assert len(raised.value.diagnostics) == 21 and "and 6 more" in raised.value.diagnostics[-1].message
 
 
 def test_several_faults_of_a_mapping_are_named_together(tmp_path):
