@@ -24,7 +24,7 @@ IN_ORDER: dict[Code, str] = {
 """The phrases of the faults that need no more than the words of their block."""
 
 RESTING, RISES = frozenset({Code.LYING, Code.SITTING}), "StandUp"
-"""Why a resting person can't do a step, and the action that helps."""
+"""The reasons for which a resting person does no step, and the action that helps."""
 
 
 def in_words(each: Diagnostic, block: Block | None, draft: Draft, known: Knowledge) -> tuple[str, str]:
