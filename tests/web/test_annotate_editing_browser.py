@@ -111,6 +111,7 @@ def test_where_a_run_stops_is_red_and_steps_keep_their_numbers(opened):  # noqa:
     saved(page)
     page.click("#run")
     expect(page.locator("#result .good")).to_contain_text("Left out, because they are in your own words: step 2.")
+    expect(page.locator(".ticks li")).to_have_count(3)
     assert page.locator(".ticks li").evaluate_all("all => all.map((each) => each.value)") == [1, 2, 3]
     expect(page.locator(".ticks li").nth(1)).to_contain_text("Not done")
     page.locator("#steps button[aria-label^='Change step 1']").click()
