@@ -49,6 +49,10 @@ FEWEST_LETTERS = 10
 """Letters below which the share says nothing, as in "Watch TV"."""
 
 
+FEWEST_WORDS = 6
+"""Words of which no more than half may be the same one."""
+
+
 def flags(study: Study, standing: Standing, others: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the flags of a person, in the order of `FLAGS`.
 
@@ -115,7 +119,7 @@ def _answers(study: Study, events: Sequence[Event]) -> Iterator[str]:
 
 
 def is_gibberish(text: Any) -> bool:
-    """Return whether a text is no words: pictures alone, or in Latin letters one word again and again, or no vowels."""
+    """Return whether a text is no words: pictures alone, or in Latin letters mostly one word again, or no vowels."""
     if not any(map(str.isalnum, str(text))) and any(unicodedata.category(each) == "So" for each in str(text)):
         return True
     words = re.findall(r"[a-z']+", str(text).casefold())
@@ -124,4 +128,5 @@ def is_gibberish(text: Any) -> bool:
         return False
     vowels = sum(each in "aeiouy" for each in letters)
     mute = len(letters) >= FEWEST_LETTERS and vowels < FEWEST_VOWELS * len(letters)
-    return mute or (len(words) >= 3 and len(set(words)) == 1)
+    same = max(Counter(words).values(), default=0)
+    return mute or (len(words) >= 3 and same == len(words)) or (len(words) >= FEWEST_WORDS and 2 * same > len(words))

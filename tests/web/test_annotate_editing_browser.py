@@ -83,3 +83,38 @@ def test_the_drawers_and_the_program_are_seen_whole(opened, width, tmp_path):  #
     row, label = page.locator(".blocklyToolboxCategory").first, page.locator(".blocklyToolboxCategoryLabel").first
     outer, inner = row.bounding_box(), label.bounding_box()
     assert outer["y"] <= inner["y"] and inner["y"] + inner["height"] <= outer["y"] + outer["height"] + 1
+
+
+COLOURS = """() => ["#blocks .faulty > .blocklyIconGroup > .blocklyIconShape", "#blocks .blocklyEmboss > rect",
+    "#blocks .blocklyBubbleText"].map((each) => getComputedStyle(document.querySelector(each)).fill)"""
+
+
+@pytest.mark.skipif("blockly" in missing(), reason="no Blockly: make web")
+def test_where_a_run_stops_is_red_and_steps_keep_their_numbers(opened):  # noqa: F811
+    page = composing(opened)
+    add(page, "Walk", "sofa")
+    page.fill("#special", "hum a song")
+    page.click("#add-special button")
+    add(page, "Lie", "sofa")
+    add(page, "Walk", "television")
+    saved(page)
+    page.click("#run")
+    expect(page.locator("#result .fault")).to_contain_text("it stops at step 4")
+    expect(page.locator("#result .fault")).to_contain_text("Stand up")
+    expect(page.locator("#state")).to_have_text("Saved. The run stopped at step 4.")
+    assert "faulty" in page.locator("#steps li").nth(3).get_attribute("class")
+    page.click("#show-blocks")
+    page.locator("#blocks .faulty > .blocklyIconGroup").click()
+    page.wait_for_selector("#blocks .blocklyBubbleText")
+    assert page.evaluate(COLOURS) == ["rgb(192, 22, 22)", "rgb(255, 248, 220)", "rgb(31, 29, 27)"]
+    page.locator("#steps button[aria-label^='Take step 4 out']").click()
+    saved(page)
+    page.click("#run")
+    expect(page.locator("#result .good")).to_contain_text("Left out, because they are in your own words: step 2.")
+    expect(page.locator(".ticks li")).to_have_count(3)
+    assert page.locator(".ticks li").evaluate_all("all => all.map((each) => each.value)") == [1, 2, 3]
+    expect(page.locator(".ticks li").nth(1)).to_contain_text("Not done")
+    page.locator("#steps button[aria-label^='Change step 1']").click()
+    expect(page.locator("#blocks-view")).to_be_hidden()
+    page.click("#leave-step")
+    expect(page.locator("#blocks-view")).to_be_visible()

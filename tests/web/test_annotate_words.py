@@ -119,7 +119,8 @@ def test_what_was_handed_in_is_seen_and_taken_back(person, set_up):
     assert "Watch television" in page and "Take it back" in page
     answer = person.post(f"/annotate/task/{set_up}/scene", data={"add": "cup", "version": "9"})
     assert answer.headers["location"].endswith("/compose?closed=scene"), "not “open in another tab”"
-    assert person.post(f"/annotate/mine/back/{set_up}").headers["location"].endswith("/compose")
+    back = person.post(f"/annotate/mine/back/{set_up}").headers["location"]
+    assert "It is not handed in now" in person.get(back).text
     assert person.get(f"/annotate/task/{set_up}/work").json()["changes"]
 
 
@@ -157,3 +158,55 @@ def test_the_next_step_after_a_description_is_its_program(person):
 def test_a_deleted_session_is_said_to_be_deleted(person):
     answer = person.post("/mine/delete")
     assert "are deleted" in person.get(answer.headers["location"]).text
+
+
+def offered(person, slot, *things):
+    """Return the things of a scene that the page offers for a slot."""
+    text = described(person)
+    scene(person, text, {"kitchen": 1}, dict.fromkeys(things, 1))
+    return [each["name"] for each in person.get(f"/annotate/task/{text}/work").json()["things"] if slot in each["fits"]]
+
+
+def test_drink_and_eat_are_offered_of_what_one_drinks_and_eats(person):
+    things = ("plate", "bowl", "sink", "vase", "milk", "cup", "water_bottle", "food_cake")
+    assert offered(person, "Drink 0", *things) == ["milk", "cup", "water_bottle"]
+    assert offered(person, "Eat 0", *things) == ["food_cake"]
+
+
+def ran(person, steps, props, rooms=None):
+    text = described(person)
+    scene(person, text, rooms or ROOMS, props)
+    return post(person, text, "run", steps).json()
+
+
+SOFA = [["sofa", 1]]
+
+
+@pytest.mark.parametrize("rest", ["Sit", "Lie"])
+def test_who_rests_is_advised_to_stand_up(person, rest):
+    steps = [{"special": "hum"}, {"action": "Walk", "things": SOFA}, {"action": rest, "things": SOFA},
+             {"action": "Walk", "things": [["television", 1]]}]  # fmt: skip
+    result = ran(person, steps, {"sofa": 1, "television": 1})
+    assert (result["ran"], result["step"]) == (False, 3)
+    assert "after step 3; put “Stand up” in between." in result["why"], result["why"]
+
+
+def test_a_run_names_what_it_left_out_and_what_was_put_where(person):
+    steps = [{"action": "Walk", "things": [["book", 1]]}, {"special": "dream about the sea"},
+             {"action": "Read", "things": [["book", 1]]}]  # fmt: skip
+    result = ran(person, steps, {"book": 1})
+    assert result["ran"] and result["left"] == [1], result
+    assert [each["step"] for each in result["ticks"]] == [0, 2]
+    assert re.search(r"For this run, before its first step: .*\bbook is in the \w+", result["added"]), result["added"]
+    assert all(each["changes"] for each in result["ticks"]), "each step says what came of it"
+
+
+def test_one_word_again_and_again_is_questioned(person):
+    data = {"title": "Eat", "description": f"{'the ' * 9}kitchen the banana", "ask": "yes"}
+    assert "like words" in person.post("/annotate/describe", data=data).text
+
+
+def test_a_list_of_tasks_has_spaces_and_a_begun_one_goes_on(person, set_up):
+    person.post(f"/annotate/task/{set_up}/save", json={"version": 3, "steps": STEPS[:1]})
+    assert "described by you; your program is begun" in person.get("/annotate/tasks").text
+    assert ">Go on<span" in person.get("/annotate/mine").text

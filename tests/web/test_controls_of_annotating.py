@@ -48,9 +48,9 @@ def seen(page):
     assert fits(page) and accessibility(page) == []
 
 
-def describe(page, title=TITLE):
+def describe(page, title=TITLE, text=TEXT):
     page.fill("#title", title)
-    page.fill("#description", TEXT)
+    page.fill("#description", text)
     go(page, button(page, "Hand it in"))
 
 
@@ -256,7 +256,7 @@ def test_the_desk_reads_and_erases_a_program(page, served):
     handed_in(page, served)
     assert "Thank you: your program is handed in" in page.inner_text("main")
     page.goto(f"{served.address}/annotate/describe")
-    describe(page, "Have another look at the television")
+    describe(page, "Have another look at the television", f"Once more: {TEXT}")  # the same words would be questioned
     page.goto(f"{served.address}/annotate/tasks?thanks=yes")
     go(page, page.get_by_role("link", name="Go on with"))
     page.goto(served.desk)

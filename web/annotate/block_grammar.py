@@ -20,6 +20,9 @@ DRAWERS: tuple[tuple[str, tuple[str, ...]], ...] = (
 
 OTHER = "Other"
 
+DRINKWARE, POURED_FROM = "drinkware", "vessel"
+"""Kinds of things that hold a drink: cups and glasses; and bottles and jugs, which are vessels that pour."""
+
 
 def drawer(action: Action, known: Knowledge) -> str:
     """Return the drawer in which an action's block is found."""
@@ -44,15 +47,18 @@ def actions(known: Knowledge) -> tuple[dict[str, Any], ...]:
 
 
 def things(draft: Draft, known: Knowledge) -> list[dict[str, Any]]:
-    """Return every declared thing: its name, instance, words, and the kinds of slots that take it."""
-    fits = {name: _slots(name, known) for name in (*draft.rooms, *draft.props)}
+    """Return every declared thing: its name, instance, words, and the kinds of slots that take it.
+
+    A slot that has a thing already keeps it, as in a program of an earlier version.
+    """
+    kept = {(ref, f"{each.action} {slot}") for each in draft.blocks for slot, ref in enumerate(each.things) if ref}
     return [
         {
             "name": ref.name,
             "instance": ref.instance,
             "words": draft.called(ref),
             "room": ref.name in draft.rooms,
-            "fits": fits[ref.name],
+            "fits": sorted({*_slots(ref.name, known), *(slot for thing, slot in kept if thing == ref)}),
         }
         for ref in draft.things()
     ]
@@ -64,5 +70,23 @@ def _slots(name: str, known: Knowledge) -> list[str]:
         f"{action.name} {slot}"
         for action in known.actions.values()
         for slot in range(action.arity)
-        if known.affords(action.name, slot, name)
+        if is_offered(action.name, slot, name, known)
     ]
+
+
+def is_offered(action: str, slot: int, name: str, known: Knowledge) -> bool:
+    """Return whether pages offer a thing for a slot: what the grammar affords, but food and drink by their nature.
+
+    The grammar affords "Drink" and "Eat" of any vessel, which stands for its content. In words that is "Drink plate".
+    """
+    thing = known.object_class(name)
+    if thing is None or not known.affords(action, slot, name):
+        return False
+    if action == "Drink":
+        return "DRINKABLE" in thing.properties or _holds_drinks(name, known)
+    return action != "Eat" or "EATABLE" in thing.properties
+
+
+def _holds_drinks(name: str, known: Knowledge) -> bool:
+    thing, kinds = known.object_class(name), known.ancestors(name)
+    return DRINKWARE in kinds or (thing is not None and POURED_FROM in kinds and "POURABLE" in thing.properties)

@@ -1,7 +1,8 @@
 """The changes of a step of a run in everyday words: no ids, no names of relations."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 
+from hearth.schemas.graph import Edge
 from hearth.schemas.graph_change import Change
 from hearth.schemas.literals import HANDS
 from hearth.schemas.spoken_words import spoken
@@ -26,7 +27,17 @@ def changed_in_words(change: Change, world: World) -> str:
 def _parts(change: Change, world: World) -> Iterator[str]:
     for node, state in change.set_states:
         yield f"{_name(node, world)} is {STATES.get(state, state.lower())}"
-    for source, relation, target in change.added:
+    yield from _places(change.added, world)
+
+
+def placed_in_words(edges: Iterable[Edge], things: Collection[int], world: World) -> str:
+    """Return where things are, in words: "the book is in the bedroom"; "" where no edge has one of them."""
+    edges = [edge for edge in edges if (edge.target if edge.relation in HELD else edge.source) in things]
+    return "; ".join(dict.fromkeys(_places(edges, world)))
+
+
+def _places(edges: Iterable[Edge], world: World) -> Iterator[str]:
+    for source, relation, target in edges:
         if relation in HELD:
             yield f"{_name(target, world)} is in the {HELD[relation]} hand"
         elif relation in PLACES:

@@ -23,6 +23,9 @@ IN_ORDER: dict[Code, str] = {
 }
 """The phrases of the faults that need no more than the words of their block."""
 
+RESTING, RISES = frozenset({Code.LYING, Code.SITTING}), "StandUp"
+"""The reasons for which a resting person does no step, and the action that helps."""
+
 
 def in_words(each: Diagnostic, block: Block | None, draft: Draft, known: Knowledge) -> tuple[str, str]:
     """Return a fault of a draft, and its remedy.
@@ -62,16 +65,17 @@ def stop_in_words(failure: Failure, numbers: Sequence[int], draft: Draft, known:
         known: the knowledge.
     """
     code, step = failure.code, numbers[failure.tick] if failure.tick < len(numbers) else -1
+    rise = say(PART, "rise_between", block=known.actions[RISES].template)
     if code is Code.NOT_SIMULATED and step >= 0:
         return ": ".join(said("not_run", block=draft.blocks[step].words(known, draft))) + "."
     inner = Code.__members__.get(failure.expected.partition(":")[0]) if code is Code.CONTRADICTION else None
     if inner is None:
-        return _sentence(_reason(failure, known), _remedy(usual_remedy(failure)))
+        return _sentence(_reason(failure, known), rise if code in RESTING else _remedy(usual_remedy(failure)))
     reason = _reason(replace(failure, code=inner, expected="", actual=""), known)
     earlier = re.search(r"made impossible by step (\d+)", failure.actual)
     if earlier and 0 < int(earlier[1]) <= len(numbers):
         reason = say(PART, "after_step", reason=reason, number=numbers[int(earlier[1]) - 1] + 1)
-    return _sentence(reason, _remedy(REMEDIES.get(inner, "")) or say(PART, "leave_one"))
+    return _sentence(reason, rise if inner in RESTING else _remedy(REMEDIES.get(inner, "")) or say(PART, "leave_one"))
 
 
 def _reason(failure: Failure, known: Knowledge) -> str:

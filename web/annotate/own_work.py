@@ -35,7 +35,7 @@ def take_back(visit: Visit) -> Response:
     )
     values = {"state": DRAFT, "version": PROGRAMS.c.version + 1}
     taken = visit.web.store.write(lambda connection: connection.execute(query.values(values)).rowcount)
-    return visit.go(f"/annotate/task/{visit.part('text')}/compose" if taken else f"{HERE}?done=gone_on")
+    return visit.go(f"/annotate/task/{visit.part('text')}/compose?back=yes" if taken else f"{HERE}?done=gone_on")
 
 
 def withdraw_program(visit: Visit) -> Response:

@@ -115,6 +115,7 @@ def compose(visit: Visit) -> Response:
         "closed": closed,
         "program": program,
         "words": words_of(visit, text, draft) if closed else [],
+        "taken_back": visit.fields.get("back") == "yes",
         "scene_closed": closed and visit.fields.get("closed") == "scene",
     }
     return visit.page("annotate/compose.html", text=text, **values)

@@ -18,9 +18,10 @@ from hearth.simulation.motion.base_pose import hand_and_base_poses
 from hearth.simulation.motion.positions import placed
 from hearth.simulation.world.home import Home
 from hearth.simulation.world.pose import Pose
-from hearth.web.annotate.change_words import changed_in_words
-from hearth.web.annotate.fault_words import stop_in_words
+from hearth.web.annotate.change_words import changed_in_words, placed_in_words
+from hearth.web.annotate.fault_words import PART, stop_in_words
 from hearth.web.annotate.program_draft import SPECIAL, Draft
+from hearth.web.phrases import say
 from hearth.web.web_errors import WebError
 
 
@@ -58,17 +59,20 @@ def run_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str
 
     Returns:
         `home`, `ran` (whether all steps ran), `why` and `step` (from 0) of the failure, and `ticks`: for each step done
-        its number, line, changes in words, and where the character is: (x, z) in metres, yaw in degrees.
+        its number, line, changes in words, and where the character is: (x, z) in metres, yaw in degrees. `left` has the
+        numbers of the special blocks before the end of the run, `added` says what was put where for it.
     """
     numbers, lines = _lines(draft)
     trial = _trial(lines, title, home, known)
     if isinstance(trial, Failure):
         at = numbers[trial.tick] if trial.tick < len(numbers) else -1
         why = stop_in_words(trial, numbers, draft, known)
-        return {"home": home, "ran": False, "why": why, "step": at, "ticks": [], "start": None}
+        return {"home": home, "ran": False, "why": why, "step": at, "ticks": [], "start": None, "left": []}
     found = _reported(trial, numbers, lines)
     why = stop_in_words(trial.execution.failure, numbers, draft, known) if trial.execution.failure else ""
-    return {"home": home, **found, "why": why}
+    end = found["step"] if found["step"] >= 0 else len(draft.blocks)
+    left = [number for number in range(end) if draft.blocks[number].action == SPECIAL]
+    return {"home": home, **found, "why": why, "left": left}
 
 
 def replay_draft(draft: Draft, title: str, home: str, known: Knowledge) -> dict[str, Any]:
@@ -126,15 +130,25 @@ def _reported(trial: Trial, numbers: list[int], lines: list[str]) -> dict[str, A
         {
             "step": numbers[tick],
             "line": lines[tick],
-            "changes": changed_in_words(worlds[tick + 1].changes(worlds[tick]), worlds[tick]),
+            "changes": changed_in_words(worlds[tick + 1].changes(worlds[tick]), worlds[tick]) or say(PART, "no_change"),
             "at": _where(poses[tick] if tick < len(poses) else None),
         }
         for tick in range(len(worlds) - 1)
     ]
     at = numbers[failure.tick] if failure and failure.tick < len(numbers) else -1
     start = _where(placed(worlds[0]).agents[0].pose)
-    added = trial.environment is not None
+    added = _added(trial)
     return {"ran": not failure, "step": at, "ticks": ticks, "start": start, "added": added}
+
+
+def _added(trial: Trial) -> str:
+    """Return what was put where for a run, of the things that its program names; "" for a home as it is."""
+    made = trial.environment
+    if made is None:
+        return ""
+    named = {ref.node for ref in made.program.objects() if ref.node is not None}
+    where = placed_in_words(made.added, named, made.world)
+    return say(PART, "added", things=where) if where else say(PART, "prepared")
 
 
 def _where(pose: Pose | None) -> list[float] | None:

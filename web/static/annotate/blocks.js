@@ -31,6 +31,14 @@ function withAdoptedStyles(work) {
   try { return work(); } finally { document.createElement = create; }
 }
 
+// The text of a bubble, without the style attribute that the policy forbids; its words run as the page's.
+function plainBubbles() {
+  const { Bubble, TextBubble } = Blockly.bubbles;
+  TextBubble.prototype.createParagraph = (inside) => Blockly.utils.dom.createSvgElement("g", {
+    class: "blocklyText blocklyBubbleText blocklyNoPointerEvents", transform: `translate(0,${Bubble.BORDER_WIDTH})`,
+  }, inside);
+}
+
 const typeOf = (action) => `act ${action}`;
 const thingType = (ref) => `thing ${ref[0]} ${ref[1]}`;
 
@@ -130,6 +138,7 @@ function theme() {
 // Show the program as blocks in an element; `changed` gets the steps after each change by hand, `loose` the number of
 // blocks that hang on nothing.
 export function mount(element, model, changed, loose) {
+  plainBubbles();
   define(model);
   const workspace = withAdoptedStyles(() => Blockly.inject(element, {
     toolbox: toolbox(model), media: "/fetched/blockly/media/", renderer: "zelos", theme: theme(), sounds: false,

@@ -14,6 +14,7 @@ let timer = 0;
 let again = AGAIN; // milliseconds until a save that had no answer is tried again
 let saving = Promise.resolve();
 let changing = -1; // the number of the step that the form changes, or -1
+let fromBlocks = false; // whether the form took that step from the blocks
 const past = []; // steps before each change, for Undo
 const ahead = []; // steps that were undone, for Redo
 
@@ -138,12 +139,12 @@ async function otherTab() {
   byId("state").append(mine, " ", other);
 }
 
+const kept = () => phrased(composer.dataset.mode === "mend" ? "checked" : "saved");
+
 function checked(found) {
   model.found = found;
   const faults = found.filter((each) => each.fault).length;
-  const mended = composer.dataset.mode === "mend";
-  const kept = phrased(mended ? "checked" : "saved");
-  say(`${kept} ${faults ? phrased("faults", { count: faults }) : phrased("ready")}`);
+  say(`${kept()} ${faults ? phrased("faults", { count: faults }) : phrased("ready")}`);
   draw();
   if (blocks) blocks.mark(found);
 }
@@ -216,7 +217,7 @@ function fillActions() {
   for (const [name, group] of drawers) group.label = name;
   byId("action").replaceChildren(...drawers.values());
   byId("cannot").textContent = cannot.length
-    ? `Not possible with the things of your scene: ${cannot.join(", ")}.` : "";
+    ? phrased("cannot", { acts: cannot.join(", ") }) : "";
   fillSlots();
 }
 
@@ -265,6 +266,7 @@ function added(event) {
 function changeStep(number) {
   const { action, things } = model.steps[number];
   if (![...byId("action").options].some((option) => option.value === action)) return; // no thing of the scene fits it now
+  fromBlocks = !byId("blocks-view").hidden;
   show("list");
   changing = number;
   byId("action").value = action;
@@ -276,6 +278,7 @@ function changeStep(number) {
 
 function leaveStep() {
   if (changing >= 0) formFor(-1);
+  if (changing >= 0 && fromBlocks) show("blocks");
   changing = -1;
 }
 
@@ -302,16 +305,19 @@ async function run() {
   byId("stage").hidden = true;
   try {
     const result = await ask("/run", { steps: model.steps, home: byId("home").value });
-    const ran = element("p", result.ran
-      ? `${phrased("ran", result)}${result.added ? ` ${phrased("added")}` : ""}`
-      : phrased("stopped", result), result.ran ? "good" : "fault");
-    byId("result").replaceChildren(ran);
-    if (!result.ran && result.step >= 0) {
-      const at = { step: result.step, fault: false, code: "RUN", message: phrased("stops_here", result), remedy: "" };
-      model.found = [...model.found.filter((each) => each.code !== "RUN"), at];
-      draw();
-      if (blocks) blocks.mark(model.found);
+    const number = result.step + 1;
+    const left = result.left.map((step) => step + 1).join(", ");
+    const words = result.ran ? phrased(left ? "ran_but" : "ran", { ...result, left })
+      : phrased(number ? "stopped_at" : "stopped", { ...result, number });
+    byId("result").replaceChildren(element("p", words, result.ran ? "good" : "fault"));
+    if (result.added) byId("result").append(element("p", result.added, "note"));
+    model.found = model.found.filter((each) => each.code !== "RUN");
+    if (!result.ran && number) {
+      model.found.push({ step: result.step, fault: true, code: "RUN", message: phrased("stops_here", result), remedy: "" });
+      say(`${kept()} ${phrased("run_stopped", { number })}`, true);
     }
+    draw();
+    if (blocks) blocks.mark(model.found);
     const sent = { steps: model.steps, home: byId("home").value };
     if (result.ticks.length) await player(byId("stage"), result, (number) => phrase(model.steps[number]), () => ask("/replay", sent));
   } catch (error) {

@@ -1,5 +1,7 @@
 // A run on the floor plan: where the character is after each step, and what the step changed.
 
+import { phrased } from "./pieces.js";
+
 const SVG = "http://www.w3.org/2000/svg";
 const PAUSE = 900;
 let timer = 0;
@@ -30,15 +32,19 @@ export async function player(stage, result, phrase, inDepth) {
   plan.append(path, person);
   const list = document.createElement("ol");
   list.className = "ticks";
-  list.append(...result.ticks.map((tick) => {
+  const row = (step, said) => { // a step keeps its number in the program
     const line = document.createElement("li");
-    line.append(phrase(tick.step), document.createElement("br"));
+    line.value = step + 1;
+    line.append(phrase(step), document.createElement("br"));
     const small = document.createElement("span");
     small.className = "small";
-    small.textContent = tick.changes;
+    small.textContent = said;
     line.append(small);
     return line;
-  }));
+  };
+  const lines = result.ticks.map((tick) => row(tick.step, tick.changes));
+  const left = result.left.map((step) => row(step, phrased("left_out")));
+  list.append(...[...lines, ...left].sort((one, other) => one.value - other.value));
   stage.querySelector("#plan").replaceChildren(plan, list);
   stage.hidden = false;
 
@@ -51,8 +57,8 @@ export async function player(stage, result, phrase, inDepth) {
     person.toggleAttribute("hidden", !at);
     if (at) person.setAttribute("transform", `translate(${at[0]} ${-at[1]}) rotate(${at[2]})`);
     path.setAttribute("points", places.slice(0, now + 1).filter(Boolean).map(([x, z]) => `${x},${-z}`).join(" "));
-    [...list.children].forEach((line, number) => line.toggleAttribute("aria-current", number === now - 1));
-    list.children[now - 1]?.scrollIntoView({ block: "nearest" });
+    lines.forEach((line, number) => line.toggleAttribute("aria-current", number === now - 1));
+    lines[now - 1]?.scrollIntoView({ block: "nearest" });
     replay?.go(now);
   }
   const play = stage.querySelector("#play");
