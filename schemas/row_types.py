@@ -199,7 +199,7 @@ class PerturbationRow(TypedDict):
     kind: Annotated[
         str,
         "what was changed: sitting, lying, at_reach, plugged, on, open, free, facing, holding, container, location, "
-        "full_hands, dirty, door, pet or seated",
+        "full_hands, dirty, door, pet, seated, done, soiled, emptied, cooled or sliced",
     ]
     dropped: Annotated[list[ConditionRow] | None, "preconditions that no longer hold; null before format 2"]
     added: Annotated[list[ConditionRow] | None, "conditions that hold instead; null before format 2"]

@@ -64,7 +64,7 @@ class UnityServer:
 
 def _log_refusal(action: str, message: str) -> None:
     """Write a refusal into the log: most methods of the published client keep its message to themselves."""
-    # The text is no argument of the line, as the log writes few lines of one form a minute.
+    # The whole text is the form of the line: the log writes few lines of one form a minute.
     LOG.warning(shown(" ".join(f"refused {action}: {message}".split()))[:LONGEST_LINE])
 
 

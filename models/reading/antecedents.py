@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 from hearth.models.reading.mentioned_nodes import Refs, Scene, fits
 from hearth.models.reading.mentions import Mention
+from hearth.models.reading.request_table import acts_of
 from hearth.models.reading.spoken_things import Spoken
 
 _CLOSE = "Close"
-_CLEANING = frozenset({"Wash", "Wipe", "Scrub", "Rinse"})
 _TOOLS = frozenset({"cleaning_tool", "cleaning_agent", "towel"})
 _ROOM = frozenset({"room"})
 MANY = frozenset(
@@ -76,7 +76,7 @@ class Antecedents:
     def referred(self, needs: frozenset[str], action: str, spoken: Sequence[Spoken], *, is_many: bool = False) -> Refs:
         """Return the things of words before that `it` or `them` stands for."""
         groups = list(spoken[:1] if needs == _ROOM else spoken)
-        if action in _CLEANING:
+        if action in acts_of("cleaned"):
             groups.sort(key=lambda each: each.action == "Grab" and self._is_tool(each))
         if action == _CLOSE:
             groups.sort(key=lambda each: (each.action != "Open", not each.is_place))

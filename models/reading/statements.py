@@ -54,7 +54,7 @@ _FINITE = re.compile(
 
 @lru_cache(maxsize=4096)
 def is_statement(text: str) -> bool:
-    """Return whether a clause, in small letters, tells or asks about something, and asks for nothing to be done.
+    """Return whether a clause, in small letters, states something or asks about it, and asks for nothing to be done.
 
     A clause with a word of wishes or duties, as `should` and `belongs` are, is none.
     """

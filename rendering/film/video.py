@@ -278,8 +278,9 @@ def record(
     for step, tick in zip(steps, known, strict=True):
         step["visible"] = _share(seen[tick], wanted[tick])
     keyframes = [(picture, known[tick]) for tick, picture in last.items()]
-    videos = tuple(writer.path for writer in writers)
-    return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))
+    return Recorded(
+        tuple(writer.path for writer in writers), len(track), steps, track, keyframes, files.close(fps, steps)
+    )
 
 
 def _share(seen: Collection[int], wanted: Collection[int]) -> float | None:

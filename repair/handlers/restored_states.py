@@ -11,6 +11,10 @@ from hearth.simulation.world.state import WorldState
 _STATES = STATE_OF | STATE_OF_SET_3
 
 
+_WALKS = "Walk"
+_TAKES = "Grab"
+
+
 def wrong_state(context: RepairContext) -> Edit | None:
     """Bring the thing out of its state where the knowledge has a way; leave the step out where it is done already.
 
@@ -51,8 +55,11 @@ def _left_out(context: RepairContext, steps: tuple[Step, ...], index: int) -> in
     """Return how many steps at the beginning only take a thing up that is held."""
     if not context.agent.held >> index & 1:
         return 0
-    taking = ("Walk", "Grab")
-    return 2 if tuple(step.action for step in steps[:2]) == taking and steps[0].objects == steps[1].objects else 0
+    return (
+        2
+        if tuple(step.action for step in steps[:2]) == (_WALKS, _TAKES) and steps[0].objects == steps[1].objects
+        else 0
+    )
 
 
 def _things(context: RepairContext, way: Restoring, index: int) -> dict[str, ObjectRef] | None:

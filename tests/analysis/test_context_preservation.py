@@ -61,7 +61,7 @@ def test_every_program_keeps_the_circumstances(build_folder, tmp_path):
 
 
 def test_repairs_that_ignore_circumstances_are_found_out(build_folder, tmp_path, monkeypatch):
-    monkeypatch.setattr(augmentation, "circumstances", lambda execution: ())
+    monkeypatch.setattr(augmentation, "circumstances", lambda execution, conditions=(): ())
     monkeypatch.setattr(RepairContext, "seat_taken", lambda context: None)  # so that nothing is brought to the seat
     found = measure(dataset(build_folder, tmp_path))
     assert 0 < found["programs"]["share"] < 0.9 and found["steps"]["share"] < 1

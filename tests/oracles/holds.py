@@ -18,6 +18,8 @@ STATES = {
     "closed": "CLOSED", "open": "OPEN", "is_off": "OFF", "is_on": "ON", "dirty": "DIRTY", "clean": "CLEAN",
     "unplugged": "PLUGGED_OUT", "plugged": "PLUGGED_IN", "sitting": "SITTING", "lying": "LYING",
 }  # fmt: skip
+OF_SET_3 = {"broken": "BROKEN", "cold": "COLD", "cut": "CUT", "empty": "EMPTY", "full": "FULL", "hot": "HOT"}
+LACKS = {"uncut": "CUT", "intact": "BROKEN"}
 EDGES = {"in": "ON", "inside": "INSIDE", "atreach": "CLOSE", "nearby": "CLOSE", "facing": "FACING"}
 DOORS = "BETWEEN"
 BEDDING = ("blanket", "comforter", "pillow", "sheets")
@@ -90,7 +92,9 @@ class Plain:
             return any(now.has_state(door, "CLOSED") for door in doors)
         if name == "pet":
             return any(now.class_name(other) in ("cat", "dog") for other in above)
-        return now.has_state(x, STATES.get(name, name))
+        if name in LACKS:
+            return not now.has_state(x, LACKS[name])
+        return now.has_state(x, {**STATES, **OF_SET_3}.get(name, name))
 
     def counted(self, x: int, above: Iterable[int]) -> list[int]:
         """Return the nodes that take room on a seat; on a bed or sofa to lie on, bedding does not."""
