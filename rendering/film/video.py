@@ -253,9 +253,8 @@ def record(
     """
     drawn = check_modalities([name for name in modalities if name not in ("graph", "rgb")], quality)
     CameraSelector(trajectory, home, view, size)  # refuses an unknown camera before a file begins
-    known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}
+    known, wanted = _shown(trajectory)
     steps = times(list(known.values()))
-    wanted = {tick: named_in(trajectory, span.steps) for tick, span in known.items()}
     seen: dict[int, set[int]] = {tick: set() for tick in known}
     writers = [Writer(inside(out, f"{view}{suffix}"), *size, fps) for suffix in suffixes]
     files, graphs = FrameFiles(out, view, modalities), _graphs(trajectory) if "graph" in modalities else {}
@@ -277,10 +276,14 @@ def record(
         writer.close()
     for step, tick in zip(steps, known, strict=True):
         step["visible"] = _share(seen[tick], wanted[tick])
-    keyframes = [(picture, known[tick]) for tick, picture in last.items()]
-    return Recorded(
-        tuple(writer.path for writer in writers), len(track), steps, track, keyframes, files.close(fps, steps)
-    )
+    videos, keyframes = tuple(writer.path for writer in writers), [(last[tick], known[tick]) for tick in last]
+    return Recorded(videos, len(track), steps, track, keyframes, files.close(fps, steps))
+
+
+def _shown(trajectory: Trajectory) -> tuple[dict[int, Span], dict[int, frozenset[int]]]:
+    """Return the span of each tick, and the things that its steps name."""
+    known = {span.tick: span for span in spans(trajectory, trajectory.variation.speed)}
+    return known, {tick: named_in(trajectory, span.steps) for tick, span in known.items()}
 
 
 def _share(seen: Collection[int], wanted: Collection[int]) -> float | None:
