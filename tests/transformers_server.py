@@ -23,7 +23,7 @@ PATIENCE = 300.0
 
 
 def is_installed():
-    """Whether the environment of the server is there, with torch."""
+    """Return whether the environment of the server and torch are installed."""
     return (ENVIRONMENT.parent / ".ready").exists()
 
 

@@ -81,7 +81,7 @@ def test_the_probe_of_transformers(transformers):
 
 
 def acted(server, folder, *, constrained=False):
-    """What a model did in a task, after its episode was verified."""
+    """Return the record of a model's episode after its verification."""
     name, url = server
     asking = Asking(memory=1, most_tokens=24, most_turns=4, constrained=constrained)
     tasks = suite("household", "valid_seen", limit=1)

@@ -1,4 +1,4 @@
-"""What people take for granted in action set 3: conditions, environments that have them, violations, and repairs."""
+"""Usual states of action set 3: conditions, environments that have them, violations, and repairs."""
 
 from collections import Counter
 

@@ -1,4 +1,4 @@
-"""What annotators read about their work: the words of the blocks, questions at hand-in, and what they handed in."""
+"""Words for annotators about their work: words of the blocks, questions at hand-in, the list of handed-in work."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import pytest
 from studies.small import SMALL
 from web.people import accessibility
 from web.test_annotate_browser import TEXT, TITLE
-from web.used_controls import NARROW, WIDE, Record, fits, go, press
+from web.used_controls import NARROW, WIDE, Record, button, fits, go, link, press
 
 pytestmark = [pytest.mark.tools, pytest.mark.parametrize("width", [WIDE, NARROW])]
 
@@ -34,14 +34,6 @@ def page(browser, served, records, width, request):
         yield made
     if request.session.testsfailed == failed:
         records[width].ran.add(request.function.__name__)
-
-
-def link(page, name):
-    return page.locator("main").get_by_role("link", name=name, exact=True).first
-
-
-def button(page, name):
-    return page.locator("main").get_by_role("button", name=name, exact=True).first
 
 
 def seen(page):

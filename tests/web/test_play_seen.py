@@ -27,7 +27,7 @@ def page(browser, request):
 
 
 def second(browser, server, link):
-    """Another person, who has joined by a link."""
+    """Return the page of another person after joining by a link."""
     other = browser.new_context(viewport={"width": 1000, "height": 800}).new_page()
     other.set_default_timeout(60_000)
     other.goto(link)

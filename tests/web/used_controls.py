@@ -124,3 +124,13 @@ def go(page, target) -> str:
 def fits(page) -> bool:
     """Return whether nothing of a page is wider than the window."""
     return page.evaluate("document.documentElement.scrollWidth <= innerWidth")
+
+
+def button(page, name):
+    """Return the first button of the page's own part by its name."""
+    return page.locator("main").get_by_role("button", name=name, exact=True).first
+
+
+def link(page, name):
+    """Return the first link of the page's own part by its name."""
+    return page.locator("main").get_by_role("link", name=name, exact=True).first

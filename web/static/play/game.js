@@ -146,7 +146,7 @@ for (const button of document.querySelectorAll("[data-move]")) {
   if (!state.over) showLost();
 }
 
-// Whether one is alone, has a helper, or plays with a person; who is not there yet helps nobody.
+// The company of the player: none, a helper, or another person, who counts from the moment of joining.
 function company() {
   if (state.helper !== "person") return say(state.helper === "none" ? "helper_none" : "helper_some");
   if (state.other !== "here") return say(state.other === "gone" ? "helper_left" : "not_here");

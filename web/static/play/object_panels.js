@@ -54,10 +54,10 @@ export class ObjectPanels {
     button.disabled = state.over || !thing.seen || !state.usable.has(thing.id);
     button.classList.toggle("close", thing.seen && thing.close);
     button.classList.toggle("wanted", state.wanted.has(thing.className));
-    const told = thing.seen
+    const label = thing.seen
       ? [this.where(thing, state), thing.close ? say("reach") : ""].filter(Boolean).join(" · ")
       : say("seen_before", { room: name(state.things, thing.room) });
-    if (button.lastChild.textContent !== told) button.lastChild.textContent = told;
+    if (button.lastChild.textContent !== label) button.lastChild.textContent = label;
   }
 
   where(thing, state) {

@@ -12,8 +12,8 @@ export function name(things, id) {
 // The name of a thing, and that the goal is about it: of two that look alike, one may not count.
 export function titled(state, id) {
   const thing = state.things.get(id);
-  const told = name(state.things, id);
-  return thing && state.wanted.has(thing.className) ? say("for_goal", { thing: told }) : told;
+  const label = name(state.things, id);
+  return thing && state.wanted.has(thing.className) ? say("for_goal", { thing: label }) : label;
 }
 
 // An act by the names of its things; an action without words of its own stands before them.
