@@ -121,7 +121,10 @@ _DONE_TO = re.compile(
 _BEFORE = re.compile(r"(?P<first>.+?),? (?:just |right |shortly )?before (?:you(?:'ve)? )?(?P<main>.+)")
 _BEFORE_FIRST = re.compile(r"(?:just |right |shortly )?before (?:you )?(?P<main>.+?), (?P<first>.+)")
 _HAVING = re.compile(r"^(?:you have|you've|you|have|having) ")
-_POSTURE = re.compile(r"(?P<main>[a-z]+ .+?),? (?P<first>(?:sitting|lying|seated)(?: down)? (?:in|on|at) .+)")
+_POSTURE = re.compile(
+    r"(?P<main>[a-z]+ .+?)(?<! no)(?<! not)(?<! without)(?<! avoid)(?<! stop)(?<! never),? "
+    r"(?P<first>(?:sitting|lying|seated)(?: down)? (?:in|on|at) .+)"
+)
 _WHILE_YOU = re.compile(r"(?P<main>.+?),? (?:while|whilst|as) you (?P<first>[a-z]+ .+)")
 _WHILE = re.compile(r"(?P<main>.+?),? (?:while|whilst) (?:you(?:'re| are) )?(?P<first>[a-z]+ing .+)")
 _STATE_IN = re.compile(r"(?P<np>.+?) (?P<state>on|off|open|closed|shut|out) in (?P<room>the [a-z]+(?: [a-z]+)?)")

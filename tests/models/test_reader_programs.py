@@ -140,6 +140,8 @@ def test_words_that_are_put_right_are_named(maple):
     ("Go to bed but first turn off the TV and don't sleep", "Sleep"),
     ("Don't open the fridge, but bring me a glass of water", "Open fridge"),
     ("Make coffee without using the coffee maker", "SwitchOn coffe_maker"),
+    ("Turn on the TV, and no sitting on the sofa", "Sit"),
+    ("Grab a book but no sitting on the bed", "Sit"),
 ])  # fmt: skip
 def test_what_is_not_to_be_done_is_not_done(text, banned, maple):
     assert not any(step.startswith(banned) for step in steps_of(text, maple))
