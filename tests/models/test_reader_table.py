@@ -1,11 +1,14 @@
 """The tables of requests: they name known actions, classes and slots."""
 
+from collections import Counter
+
 import pytest
 
 from hearth.kb.action_sets import LATEST
 from hearth.kb.loading.load import default
 from hearth.models.reading.clause_reader import CONSUME, PUT_AWAY, PUT_NEAR, PUT_TO
 from hearth.models.reading.request_table import is_slot, requests, words
+from hearth.schemas.yaml_limits import packaged
 
 KNOWN = default().of_set(LATEST)
 OURS = {CONSUME, PUT_AWAY, PUT_NEAR, PUT_TO}
@@ -44,3 +47,11 @@ def test_every_need_is_a_property_a_kind_or_a_class():
 @pytest.mark.parametrize("name", ["courtesy", "openings"])
 def test_words_around_requests_take_nothing_else(name):
     assert getattr(words(), name).fullmatch("the milk") is None
+
+
+def test_no_pattern_and_no_word_of_a_group_stands_twice():
+    data = packaged("hearth.kb.language", "requests.yaml")
+    patterns = [pattern for row in data["requests"] for pattern in row["say"]]
+    assert [pattern for pattern, number in Counter(patterns).items() if number > 1] == []
+    groups = {name: Counter(words) for name, words in data["words"].items()}
+    assert {name: words for name, words in groups.items() if max(words.values()) > 1} == {}

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pytest
 from studies.small import SMALL
-from web.people import accessibility
 from web.test_annotate_browser import TEXT, TITLE
-from web.used_controls import NARROW, WIDE, Record, button, fits, go, link, press
+from web.used_controls import NARROW, WIDE, Record, button, go, link, press, seen
 
 pytestmark = [pytest.mark.tools, pytest.mark.parametrize("width", [WIDE, NARROW])]
 
@@ -34,10 +33,6 @@ def page(browser, served, records, width, request):
         yield made
     if request.session.testsfailed == failed:
         records[width].ran.add(request.function.__name__)
-
-
-def seen(page):
-    assert fits(page) and accessibility(page) == []
 
 
 def describe(page, title=TITLE, text=TEXT):
@@ -169,6 +164,15 @@ def test_a_program_is_described_written_run_and_handed_in(page, served):
     go(page, link(page, "Set the scene"))
 
 
+def handed_in_again(page):
+    """Hand a program in as it is, and open it as one that is handed in."""
+    for control in ("#submit", "#sure"):
+        press(page, control)
+    page.wait_for_url("**/annotate/tasks*")
+    go(page, page.locator(".list a").first)
+    page.goto(f"{page.url}/compose")
+
+
 def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, served):
     page.goto(f"{served.address}/annotate/describe")
     describe(page)
@@ -188,11 +192,8 @@ def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, ser
         press(page, page.get_by_role("link", name="Help"))
     opened.value.close()
     page.select_option("#action", "Dance")
-    for control in ("#add-step button", "#submit", "#sure"):
-        press(page, control)
-    page.wait_for_url("**/annotate/tasks*")
-    go(page, page.locator(".list a").first)
-    page.goto(f"{page.url}/compose")
+    press(page, "#add-step button")
+    handed_in_again(page)
     go(page, page.locator("main").get_by_role("link", name="another description"))
     page.goto(f"{served.address}/annotate/")
     go(page, link(page, "Your work"))
@@ -200,6 +201,8 @@ def test_a_program_is_edited_handed_in_as_it_is_taken_back_and_deleted(page, ser
     go(page, link(page, "Your work"))
     go(page, button(page, "Take it back, to change it"))
     page.wait_for_selector("#action option", state="attached")
+    handed_in_again(page)
+    go(page, button(page, "Take it back, to change it"))
     page.goto(f"{served.address}/mine")
     go(page, link(page, "Your work"))
     go(page, page.locator("main").get_by_role("link", name=TITLE, exact=True))

@@ -5,10 +5,9 @@ from __future__ import annotations
 import pytest
 from studies.small import SMALL
 from studies.test_replays_to_judge import REPLAYED, with_replays
-from web.people import accessibility
 from web.test_study_browser import films
 from web.test_study_room import JUDGE
-from web.used_controls import NARROW, WIDE, Record, fits, go, press
+from web.used_controls import NARROW, WIDE, Record, go, press, seen
 
 pytestmark = [pytest.mark.tools, pytest.mark.parametrize("width", [WIDE, NARROW])]
 
@@ -51,10 +50,6 @@ def visitor(context, server, link="/study/?PROLIFIC_PID=p1"):
 
 def button(page, name):
     return page.locator("main").get_by_role("button", name=name, exact=True)
-
-
-def seen(page):
-    assert fits(page) and accessibility(page) == []
 
 
 def test_the_whole_way_of_a_study_that_is_played(opened):

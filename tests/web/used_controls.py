@@ -10,6 +10,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from web.people import accessibility
+
 SCRIPT = Path(__file__).with_name("used_controls.js")
 WIDE, NARROW = 1400, 390
 """Widths of the pages that are tested, in pixels; the narrow one is touched, not clicked."""
@@ -134,3 +136,8 @@ def button(page, name):
 def link(page, name):
     """Return the first link of the page's own part by its name."""
     return page.locator("main").get_by_role("link", name=name, exact=True).first
+
+
+def seen(page):
+    """Assert that a page fits its width, and that axe finds nothing."""
+    assert fits(page) and accessibility(page) == []
