@@ -250,7 +250,7 @@ class _Reading(Statements):
 
     def _banned(self) -> None:
         """Take `off limits` behind the one thing that is not to be opened."""
-        if not self.waiting and self.bans and not self.mode.strip("ban"):
+        if not self.waiting and self.bans and self.mode in ("", "ban"):
             return  # `it mustn't be opened`: of the thing that was forbidden before
         if self.mode or len(self.waiting) != 1 or self.waiting[0][1] not in (1, UNSAID):
             raise RefusedError

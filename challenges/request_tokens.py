@@ -38,10 +38,9 @@ _TAILS = re.compile(
     r",? (?:till|until|where|because|since|so (?:that )?(?:i|we|you|they|he|she|it|it's)|i want to|for our|there are) "
     r"[^,.!?;:]*(?=[,.!?;:]|$)"
 )
-_STATED = re.compile(
-    r"\b(the|a|an|my|your|our|some|two|three|four) (?:clean|dirty|nice|fresh|spare|lovely|old|new|good) "
-)
+_STATED = re.compile(r"\b(the|a|an|my|your|our|some|two|three|four) (?:nice|fresh|spare|lovely|good) ")
 _BOTH = re.compile(r"\bboth (?=(?:the|a|an|my|your|our) [a-z' -]+?(?<!s) and )")
+_FORBIDDING = frozenset({"no", "ban", "banned", "open", "shut", "dark", "turn_off"})
 _ASKING = frozenset(
     {
         "put",
@@ -105,8 +104,7 @@ def for_people(text: str) -> tuple[str, int]:
 
 def is_aside(sentence: str, known: Known) -> bool:
     """Return whether a sentence names no thing and has no word that asks for something: `the kids are done playing`."""
-    words = re.findall(r"[a-z0-9'-]+", sentence)
-    grams = [" ".join(words[at : at + n]) for n in (1, 2, 3) for at in range(len(words) - n + 1)]
+    grams = _grams(sentence)
     if any(each in known.one or each in known.many for each in grams):
         return False
     kinds = {kind for each in grams for kind in _phrases().get(each, ())}
@@ -116,9 +114,9 @@ def is_aside(sentence: str, known: Known) -> bool:
 def without_reasons(text: str, known: Known, rooms: frozenset[str] = frozenset()) -> str:
     """Return a request without what asks for nothing: reasons, as `so I can see`, and chat that names no thing."""
     text = _STATED.sub(r"\1 ", _PAIRS.sub(r"\1 ", _BOTH.sub("", _REASONS.sub("", text))))
-    text = _TAILS.sub(lambda tail: tail[0] if _names_things(tail[0], known, rooms) else "", text)
-    pieces = _PIECES.split(text)
+    text = _TAILS.sub(lambda tail: "" if _is_empty_talk(tail[0], known, rooms) else tail[0], text)
     text = _FOR_WHOM.sub(lambda found: found[0] if _names_things(found[0], known, rooms) else "", text)
+    pieces = _PIECES.split(text)
     kept = ""
     for piece, joint in zip(pieces[::2], [*pieces[1::2], ""], strict=True):
         plain = _LEADING.sub("", piece.strip())
@@ -131,16 +129,26 @@ def without_reasons(text: str, known: Known, rooms: frozenset[str] = frozenset()
 
 def is_chat(piece: str, known: Known, rooms: frozenset[str]) -> bool:
     """Return whether a part of a sentence names no thing and asks for nothing: `we're going to bed`."""
-    if not piece or _names_things(piece, known, rooms):
+    if not piece or not _is_empty_talk(piece, known, rooms):
         return False
     return bool(_CHATS.match(piece)) or is_statement(piece) or is_aside(piece, known)
 
 
+def _is_empty_talk(piece: str, known: Known, rooms: frozenset[str]) -> bool:
+    """Return whether a part names no thing and forbids nothing: `while never opening it` says something."""
+    kinds = {kind for each in _grams(piece) for kind in _phrases().get(each, ())}
+    return kinds.isdisjoint(_FORBIDDING) and not _names_things(piece, known, rooms)
+
+
+def _grams(text: str) -> list[str]:
+    """Return the runs of words of a text, as long as the longest phrase may be."""
+    words = re.findall(r"[a-z0-9'-]+", text)
+    return [" ".join(words[at : at + n]) for n in range(1, LONGEST_NAME + 1) for at in range(len(words) - n + 1)]
+
+
 def _names_things(piece: str, known: Known, rooms: frozenset[str]) -> bool:
     """Return whether a part of a request names a thing; a room alone, as `let's sort the bedroom` has, is none."""
-    words = re.findall(r"[a-z0-9'-]+", piece)
-    grams = [" ".join(words[at : at + n]) for n in (1, 2, 3) for at in range(len(words) - n + 1)]
-    return any((each in known.one or each in known.many) and each not in rooms for each in grams)
+    return any((each in known.one or each in known.many) and each not in rooms for each in _grams(piece))
 
 
 def tokens(text: str, known: Known, people: int = 1) -> Iterator[Token]:
