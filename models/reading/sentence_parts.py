@@ -7,7 +7,7 @@ import re
 from hearth.models.reading.clause_matches import plain_words
 from hearth.models.reading.clause_reader import TAKEN_BACK
 from hearth.models.reading.request_table import words
-from hearth.models.reading.statements import is_statement
+from hearth.models.reading.statements import FORBIDS, is_statement
 
 PARTS = re.compile(
     r"(,? and (?:only )?then |,? (?:only )?then |,? (?:and )?(?:afterwards|after that),? "
@@ -52,7 +52,7 @@ def is_aside(text: str) -> bool:
     """Return whether a clause asks for nothing."""
     if PARTS.search(text) or (STATEMENT.match(text) and not _WISH.match(text)):
         return False
-    if text in TAKEN_BACK:
+    if text in TAKEN_BACK or (FORBIDS.search(text) and not BAN.match(text)):
         return False
     plain = plain_words(text)
     if any(words().asides.fullmatch(each) for each in dict.fromkeys((text, plain)) if each):

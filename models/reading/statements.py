@@ -52,6 +52,15 @@ _FINITE = re.compile(
 )
 
 
+FORBIDS = re.compile(
+    r"\b(?:nobody|no one|nothing|none)\b.*\b(?:may|can|should|is to|gets to|touches|opens|uses)\b"
+    r"|\byou\b.*\b(?:can't|cannot|can not|may not|aren't to|are not to|won't|will not|don't|do not)\b"
+    r"|\b(?:can't|cannot|isn't|is not|aren't|are not|not) (?:to )?be (?:[a-z]+ed|on|off|open|touched|used|shut)\b"
+    r"|\boff[ -]limits\b|\bforbidden\b|\bdo not\b|\bhands off\b"
+)
+"""Words of a ban: a clause with them asks for something, even where it looks like a statement."""
+
+
 @lru_cache(maxsize=4096)
 def is_statement(text: str) -> bool:
     """Return whether a clause, in small letters, states something or asks about it, and asks for nothing to be done.
@@ -62,7 +71,7 @@ def is_statement(text: str) -> bool:
         return False
     if _EXCLAIMS.fullmatch(text):
         return True
-    if _WANTS.search(text):
+    if _WANTS.search(text) or FORBIDS.search(text):
         return False
     if _ASKS_WHAT.fullmatch(text) or _TELLS.fullmatch(text):
         return True

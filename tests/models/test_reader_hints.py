@@ -67,10 +67,23 @@ def test_the_window_is_that_of_the_room_that_was_spoken_of():
 @pytest.mark.parametrize(("text", "expected"), [
     ("my back hurts", True), ("the sun's strong", True), ("who's there", True), ("we are going to bed", True),
     ("the milk should go in the fridge", False), ("put the cup away", False), ("you can have some juice", False),
+    ("nobody may open the oven", False), ("you can't use the oven", False), ("the oven can't be opened", False),
+    ("the fridge is off limits", False), ("you are not to touch the stove", False), ("no one touches the tv", False),
     ("the plates belong in the cupboard", False), ("nobody may open the fridge, never", False),
 ])  # fmt: skip
 def test_statements_are_not_wishes(text, expected):
     assert is_statement(text) is expected
+
+
+@pytest.mark.parametrize("text", [
+    "Bring me the milk; nobody may open the oven.",
+    "Put a plate on the table. The oven can't be opened.",
+    "Put a plate on the table, the fridge is off limits.",
+    "Wash the cup if the sink is clean.",
+    "Bring me the book unless it is dark.",
+])  # fmt: skip
+def test_bans_and_conditions_that_are_not_understood_are_refused(text, birch):
+    assert steps_of(text, birch) == []
 
 
 @pytest.mark.parametrize("author", AUTHORS)
